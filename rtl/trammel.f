@@ -19,6 +19,7 @@ buses/observe_pkg.sv
 buses/path_pkg.sv
 buses/pins_state_pkg.sv
 buses/probe_pkg.sv
+buses/pwm_order_pkg.sv
 buses/queue_state_pkg.sv
 buses/refusal_pkg.sv
 buses/register_access_pkg.sv
@@ -90,6 +91,9 @@ io/input_filter.sv
 io/input_pins.sv
 io/output_pins.sv
 io/output_roles.sv
+io/pwm.sv
+io/pwm_channel.sv
+io/pwm_duty.sv
 io/role_scan.sv
 path/arc_generator.sv
 path/barrier.sv

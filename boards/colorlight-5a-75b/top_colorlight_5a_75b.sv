@@ -46,6 +46,7 @@ module top_colorlight_5a_75b #(
       .SoftLimits(1),
       .EmergencyStop(1),
       .Enables(1),
+      .Pwm(1),
       .Inputs(16),
       .Outputs(8)
   ) card (

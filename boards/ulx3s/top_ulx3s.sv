@@ -47,6 +47,7 @@ module top_ulx3s #(
       .SoftLimits(1),
       .EmergencyStop(1),
       .Enables(1),
+      .Pwm(1),
       .Inputs(16),
       .Outputs(8)
   ) card (

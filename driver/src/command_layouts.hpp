@@ -90,6 +90,14 @@ inline constexpr map::Field kWaitCondition = field_of(kWaitInput, "condition");
 inline constexpr const map::Command& kProbeLayout = layout_for(map::Opcode::Probe);
 inline constexpr map::Field kProbeCondition = field_of(kProbeLayout, "condition");
 inline constexpr const map::Command& kProbeEnd = layout_for(map::Opcode::ProbeEnd);
+inline constexpr const map::Command& kPwm = layout_for(map::Opcode::Pwm);
+inline constexpr map::Field kPwmSelect = field_of(kPwm, "select");
+inline constexpr map::Field kPwmDuty = field_of(kPwm, "duty");
+inline constexpr map::Field kPwmGain = field_of(kPwm, "gain");
+// Bits of the field `select`.
+inline constexpr unsigned kFollowsBit = 4;
+inline constexpr unsigned kPwmShift = 8;
+inline constexpr unsigned kPwmShiftMask = 0x1F;
 // Bits of the field `condition`.
 inline constexpr unsigned kInputMask = 0x1F;
 inline constexpr unsigned kLevelBit = 5;

@@ -143,6 +143,17 @@ OutputCommand output_from(const Reader& from) {
           static_cast<std::uint16_t>(from.unsigned_field<kClear>())};
 }
 
+PwmCommand pwm_from(const Reader& from) {
+  const auto select = static_cast<unsigned>(from.unsigned_field<kPwmSelect>());
+  PwmCommand pwm;
+  pwm.channel = static_cast<std::uint8_t>(select & 1U);
+  pwm.follows = (select >> kFollowsBit & 1U) != 0;
+  pwm.shift = static_cast<std::uint8_t>(select >> kPwmShift & kPwmShiftMask);
+  pwm.duty = static_cast<std::uint16_t>(from.unsigned_field<kPwmDuty>());
+  pwm.gain = static_cast<std::uint16_t>(from.unsigned_field<kPwmGain>());
+  return pwm;
+}
+
 Command command_from(map::Opcode opcode, std::uint8_t mask, const Reader& from) {
   switch (opcode) {
     case map::Opcode::Line:
@@ -167,6 +178,8 @@ Command command_from(map::Opcode opcode, std::uint8_t mask, const Reader& from) 
       return ProbeCommand{input_of<kProbeCondition>(from), level_of<kProbeCondition>(from)};
     case map::Opcode::ProbeEnd:
       return ProbeEndCommand{};
+    case map::Opcode::Pwm:
+      return pwm_from(from);
     default:
       break;
   }

@@ -218,6 +218,17 @@ std::size_t write(const ProbeEndCommand&, std::uint8_t number, std::uint32_t* wo
   return Writer(kProbeEnd, 0, 0, number, words).length();
 }
 
+std::size_t write(const PwmCommand& pwm, std::uint8_t number, std::uint32_t* words) {
+  if (pwm.channel > 1) refuse(kPwm, fmt::format("channel {}", pwm.channel));
+  if (pwm.shift > kPwmShiftMask) refuse(kPwm, fmt::format("shift {}", pwm.shift));
+  Writer to(kPwm, 0, 0, number, words);
+  to.field<kPwmSelect>(
+      std::uint64_t{pwm.channel | (pwm.follows ? 1U << kFollowsBit : 0U) | unsigned{pwm.shift} << kPwmShift});
+  to.field<kPwmDuty>(std::uint64_t{pwm.duty});
+  to.field<kPwmGain>(std::uint64_t{pwm.gain});
+  return to.length();
+}
+
 }  // namespace
 
 std::size_t encode(const Command& command, std::uint8_t number, std::uint32_t* words) {
@@ -232,12 +243,13 @@ void encode(const Command& command, std::uint8_t number, std::vector<std::uint32
 
 bool counts_as_begun(const Command& command) {
   return !std::holds_alternative<OutputCommand>(command) && !std::holds_alternative<MarkCommand>(command) &&
-         !std::holds_alternative<ProbeCommand>(command);
+         !std::holds_alternative<ProbeCommand>(command) && !std::holds_alternative<PwmCommand>(command);
 }
 
 const card_map::Command& layout_of(const Command& command) {
-  constexpr std::array<const map::Command*, 11> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeedLayout,  &kDwell,   &kEnd,
-                                                         &kOutput, &kMark, &kWaitInput, &kProbeLayout, &kProbeEnd};
+  constexpr std::array<const map::Command*, 12> kLayouts{&kLine,      &kArc,         &kArcChord, &kFeedLayout,
+                                                         &kDwell,     &kEnd,         &kOutput,   &kMark,
+                                                         &kWaitInput, &kProbeLayout, &kProbeEnd, &kPwm};
   static_assert(std::variant_size_v<Command> == kLayouts.size() &&
                 std::is_same_v<std::variant_alternative_t<0, Command>, LineCommand> &&
                 std::is_same_v<std::variant_alternative_t<1, Command>, ArcCommand> &&
@@ -249,7 +261,8 @@ const card_map::Command& layout_of(const Command& command) {
                 std::is_same_v<std::variant_alternative_t<7, Command>, MarkCommand> &&
                 std::is_same_v<std::variant_alternative_t<8, Command>, WaitInputCommand> &&
                 std::is_same_v<std::variant_alternative_t<9, Command>, ProbeCommand> &&
-                std::is_same_v<std::variant_alternative_t<10, Command>, ProbeEndCommand>);
+                std::is_same_v<std::variant_alternative_t<10, Command>, ProbeEndCommand> &&
+                std::is_same_v<std::variant_alternative_t<11, Command>, PwmCommand>);
   return *kLayouts[command.index()];
 }
 

@@ -9,7 +9,8 @@ package commands_pkg;
   localparam int RUNS = 3;  // a path is under way
   localparam int PROBE_WAITS = 4;  // a PROBE is decoded and no path runs (combinational)
   localparam int PROBE_ENDS = 5;  // PROBE_END has begun (combinational)
-  localparam int WIDTH = 6;
+  localparam int TAKE_PWM = 6;  // PWM is taken now; its last halfword is on the load bus (combinational)
+  localparam int WIDTH = 7;
 
 endpackage
 `default_nettype wire

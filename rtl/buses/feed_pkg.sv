@@ -15,7 +15,18 @@ package feed_pkg;
   localparam int RELEASED = 9;  // their brake is
   localparam int HEALTHY = 10;  // the card is
   localparam int PUMP = 11;  // the charge pump's square wave
-  localparam int WIDTH = 12;
+  localparam int GIVES = 12;  // a piece is under way, and the drives do not keep its ticks back (combinational)
+  localparam int RATIO = 13;  // 17 bits: 2^-16
+  localparam int RATE = 30;  // 32 bits: 2^-32 feed ticks per enabled clock
+  localparam int WIDTH = 62;
+
+  function automatic logic [16:0] ratio(input logic [WIDTH-1:0] feed);
+    ratio = feed[RATIO+:17];
+  endfunction
+
+  function automatic logic [31:0] rate(input logic [WIDTH-1:0] feed);
+    rate = feed[RATE+:32];
+  endfunction
 
 endpackage
 `default_nettype wire

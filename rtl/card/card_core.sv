@@ -20,6 +20,7 @@ module card_core #(
     parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
     parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
     parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
+    parameter int          Pwm               = 0,     // 1: PWM on two channels of outputs
     parameter int          Inputs            = 4,     // 1 to 32, of a card with path commands
     parameter int          Outputs           = 4,     // 1 to 16
     parameter int          Ports             = 1,     // 1 to 4: what is joined in front of the inner port
@@ -60,10 +61,11 @@ module card_core #(
       32'(Captures != 0) << card_map_pkg::ENGINE_CAPTURES |
       32'(CaptureFifo != 0) << card_map_pkg::ENGINE_CAPTURE_FIFO |
       32'(EmergencyStop != 0) << card_map_pkg::ENGINE_EMERGENCY_STOP |
-      32'(Enables != 0) << card_map_pkg::ENGINE_ENABLES | 32'(SoftLimits != 0) << card_map_pkg::ENGINE_SOFT_LIMITS;
+      32'(Enables != 0) << card_map_pkg::ENGINE_ENABLES |
+      32'(SoftLimits != 0) << card_map_pkg::ENGINE_SOFT_LIMITS | 32'(Pwm != 0) << card_map_pkg::ENGINE_PWM;
   localparam int FLAGS = Accumulator | EightDirections | ArcGenerator | DirectMode | UnderrunHold | Classes |
       Watermarks | PathCommands | PositionStreaming | MachineInputs | CaptureFifo | EmergencyStop | Enables |
-      SoftLimits | BuildDirty;
+      SoftLimits | Pwm | BuildDirty;
 
   card_parameters #(
       .Axes(Axes),

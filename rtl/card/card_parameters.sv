@@ -51,6 +51,9 @@ module card_parameters #(
     if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO] && Captures == 0) begin : gen_capture_fifo_alone
       ERROR_CaptureFifo_needs_Captures error ();
     end
+    if (Engines[card_map_pkg::ENGINE_PWM] && !PATH_COMMANDS) begin : gen_pwm_alone
+      ERROR_Pwm_needs_PathCommands error ();
+    end
     if (Engines[card_map_pkg::ENGINE_ENABLES] && !PATH_COMMANDS) begin : gen_enables_alone
       ERROR_Enables_needs_PathCommands error ();
     end

@@ -49,6 +49,7 @@ module time_part #(
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o
 );
   logic [16:0] ratio;
+  logic [31:0] rate;
   logic at_rest;
   logic hold;
   logic underrun_hold;
@@ -73,7 +74,11 @@ module time_part #(
   assign feed_o[feed_pkg::STOPPING] = stopping;
   assign feed_o[feed_pkg::CLOSING] = closing;
   assign feed_o[feed_pkg::LATCHED] = latched_i;
+  assign feed_o[feed_pkg::GIVES] = active && !enable_wait;
+  assign feed_o[feed_pkg::RATIO+:17] = ratio;
+  assign feed_o[feed_pkg::RATE+:32] = rate;
   assign time_state_o[time_state_pkg::RATIO+:17] = ratio;
+  assign time_state_o[time_state_pkg::RATE+:32] = rate;
   assign time_state_o[time_state_pkg::TICK] = tick_o;
   assign time_state_o[time_state_pkg::HELD] = at_rest;
   assign time_state_o[time_state_pkg::FEED_ACTIVE] = active;
@@ -261,7 +266,7 @@ module time_part #(
       .silent_o(feed_o[feed_pkg::SILENT]),
       .idle_o,
       .ratio_o(ratio),
-      .rate_o(time_state_o[time_state_pkg::RATE+:32]),
+      .rate_o(rate),
       .begun_o(time_state_o[time_state_pkg::FEED_BEGUN+:32]),
       .snapshot_i,
       .snapshot_o

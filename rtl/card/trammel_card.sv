@@ -19,6 +19,7 @@ module trammel_card #(
     parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
     parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
     parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
+    parameter int          Pwm               = 0,     // 1: PWM on two channels of outputs
     parameter int          Inputs            = 4,     // 1 to 32, of a card with path commands
     parameter int          Outputs           = 4,
     parameter logic [31:0] BuildId           = 0,
@@ -127,6 +128,7 @@ module trammel_card #(
       .SoftLimits(SoftLimits),
       .EmergencyStop(EmergencyStop),
       .Enables(Enables),
+      .Pwm(Pwm),
       .Inputs(Inputs),
       .Outputs(Outputs),
       .Ports(1),

@@ -1,7 +1,7 @@
 // Decodes the next geometry command onto the load bus: a line's increments to the axes, an arc's state to the path
 // engines, the count to the count chain. The direct loader's halfwords go through the same register.
 //
-// OUTPUT's masks and the conditions of PROBE and WAIT_INPUT go to the path commands.
+// OUTPUT's masks, the fields of PWM and the conditions of PROBE and WAIT_INPUT go to the path commands.
 //
 // The engines have no second set of registers: what follows an arc's prescaler waits until the engine takes it. A line's
 // increments wait while the axes' shadows are the arc generator's.
@@ -28,6 +28,7 @@ module geometry_decoder #(
     output logic barrier_o,  // no path
     output logic output_o,
     output logic mark_o,
+    output logic pwm_o,
     output logic probe_o,
     output logic end_o,
     output logic wait_o,  // WAIT_INPUT
@@ -61,6 +62,7 @@ module geometry_decoder #(
   logic       is_chord_q;
   logic       is_output_q;
   logic       is_mark_q;
+  logic       is_pwm_q;
   logic       is_probe_q;
   logic       is_wait_q;
   logic       has_words;  // for the path commands
@@ -81,11 +83,12 @@ module geometry_decoder #(
       is_chord_q  <= Engines[card_map_pkg::ENGINE_ARC_GENERATOR] && word_i[7:0] == card_map_pkg::OP_ARC_CHORD;
       is_output_q <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_OUTPUT;
       is_mark_q   <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_MARK;
+      is_pwm_q    <= Engines[card_map_pkg::ENGINE_PWM] && word_i[7:0] == card_map_pkg::OP_PWM;
       is_probe_q  <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_PROBE;
       is_wait_q   <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_WAIT_INPUT;
     end
   end
-  assign has_words = is_output_q || is_probe_q || is_wait_q;
+  assign has_words = is_output_q || is_pwm_q || is_probe_q || is_wait_q;
   assign on_engine = is_arc_q || is_chord_q;  // another than lines: fields go by their number
   assign mask_o    = mask[Axes-1:0];
 
@@ -132,8 +135,8 @@ module geometry_decoder #(
     endcase
   endfunction
 
-  // The fields of a command that is no path are numbered from here: none that waits has such a number.
-  localparam logic [4:0] FIRST_OF_COMMAND = 5'd8;
+  // The fields of a command that is no path are numbered up to here: none that waits has such a number.
+  localparam logic [4:0] LAST_OF_COMMAND = 5'd11;
 
   // All paths begin with a field of three halfwords, those on an engine with path ticks, prescale, plane. A line's fields
   // are its axes. An arc's in chords end with the axes outside its plane.
@@ -159,11 +162,11 @@ module geometry_decoder #(
     next_field   = !to_axis ? next_q : is_chord_q ? AXIS | lowest : lowest;
     next_length  = to_axis ? 3'd2 : numbered_length;
     last_field   = is_arc_q ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
-    // Two masks, or the second number alone: a condition.
+    // A condition, two masks, or three fields of PWM.
     if (has_words) begin
-      first_field  = FIRST_OF_COMMAND | 5'(!is_output_q);
+      first_field  = LAST_OF_COMMAND - 5'(is_output_q) - {3'd0, is_pwm_q, 1'b0};
       first_length = 3'd0;
-      last_field   = field[0];
+      last_field   = field[1:0] == LAST_OF_COMMAND[1:0];
     end
   end
 
@@ -220,6 +223,7 @@ module geometry_decoder #(
     barrier_o   <= !is_line_q && !on_engine;
     output_o    <= is_output_q;
     mark_o      <= is_mark_q;
+    pwm_o       <= is_pwm_q;
     probe_o     <= is_probe_q;
     end_o       <= opcode == card_map_pkg::OP_END;
     wait_o      <= is_wait_q;

@@ -41,9 +41,10 @@ module geometry_sequencer #(
   // the decoded command
   logic [Axes-1:0] mask;
   logic [4:0] engine;
-  logic is_barrier;  // or one of the next three
+  logic is_barrier;  // or one of the next four
   logic is_output;
   logic is_mark;
+  logic is_pwm;
   logic is_probe;
   logic is_end;
   logic is_wait;
@@ -74,15 +75,18 @@ module geometry_sequencer #(
   logic [Axes-1:0] active;
   logic take_output;
   logic take_mark;
+  logic take_pwm;
 
-  assign instant = is_output || is_mark || is_probe;
+  assign instant = is_output || is_mark || is_pwm || is_probe;
   assign runs = taking || (valid && !is_barrier);
   assign dropped = valid && drop_i && !is_probe_end;
   assign take_output = valid && is_output && !drop_i;
   assign take_mark = valid && is_mark && !drop_i;
+  assign take_pwm = valid && is_pwm && !drop_i;
 
   assign commands_o[commands_pkg::TAKE_OUTPUT] = take_output;
   assign commands_o[commands_pkg::TAKE_MARK] = take_mark;
+  assign commands_o[commands_pkg::TAKE_PWM] = take_pwm;
   assign commands_o[commands_pkg::OVER] = over;
   assign commands_o[commands_pkg::RUNS] = path_active;
   assign commands_o[commands_pkg::PROBE_WAITS] = valid && is_probe && !path_active;
@@ -114,7 +118,7 @@ module geometry_sequencer #(
       .clk_i,
       .rst_i,
       .cut_i,
-      .pop_i(pop || take_output || take_mark || probe_i[probe_pkg::TAKEN] || dropped),
+      .pop_i(pop || take_output || take_mark || take_pwm || probe_i[probe_pkg::TAKEN] || dropped),
       .payload_ready_i(engines_i[engines_pkg::PAYLOAD_READY] && !move_o[move_pkg::TAKING]),
       .shadows_free_i(engines_i[engines_pkg::SHADOWS_FREE]),
       .empty_i,
@@ -127,6 +131,7 @@ module geometry_sequencer #(
       .barrier_o(is_barrier),
       .output_o(is_output),
       .mark_o(is_mark),
+      .pwm_o(is_pwm),
       .probe_o(is_probe),
       .end_o(is_end),
       .wait_o(is_wait),

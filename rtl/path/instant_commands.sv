@@ -1,4 +1,4 @@
-// What commands do at their place on the path beside motion: OUTPUT and MARK.
+// What commands do at their place on the path beside motion: OUTPUT and MARK, and when PWM takes effect.
 //
 // They wait for the end of the path that runs as they are decoded, and then for as long as its last tick takes to the
 // axes' steps; where none runs for that long alone. Nothing is decoded between a path's end and its effect, since a
@@ -15,12 +15,13 @@ module instant_commands #(
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic take_output_i,  // OUTPUT is taken now; its last halfword is on load_i
     input wire logic take_mark_i,  // MARK is taken now
+    input wire logic take_pwm_i,  // PWM is taken now
     input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
     input wire logic runs_i,  // a path is under way
     output logic mark_o,  // event: a snapshot is wanted
     output logic [31:0] marks_o,  // those that have taken effect
     // the outputs' change
-    output logic change_o,  // combinational
+    output logic change_o,  // combinational; PWM takes effect with it
     output logic [Outputs-1:0] set_o,
     output logic [Outputs-1:0] clear_o
 );
@@ -30,7 +31,7 @@ module instant_commands #(
   // Set, then clear.
   logic [2*Outputs-1:0] words_q;
   logic                 merge_q;
-  logic                 output_waits_q;
+  logic                 change_waits_q;  // OUTPUT or PWM
   logic                 mark_waits_q;
   logic                 mark_due_q;
   logic [          2:0] delay_q;
@@ -39,7 +40,7 @@ module instant_commands #(
   logic [         15:0] word;
 
   assign word = load_bus_pkg::word(load_i);
-  assign fire = (output_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
+  assign fire = (change_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
   assign change_o = delay_q == 3'd1 && !cut_i;
 
   // What has taken effect stays in the masks, where it changes nothing more: set goes before clear, a later command takes
@@ -51,7 +52,7 @@ module instant_commands #(
       set_o   <= (set_o & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0];
       clear_o <= clear_o | words_q[2*Outputs-1:Outputs];
     end
-    output_waits_q <= take_output_i || (output_waits_q && !fire);
+    change_waits_q <= take_output_i || take_pwm_i || (change_waits_q && !fire);
     mark_waits_q   <= take_mark_i || (mark_waits_q && !fire);
     if (fire) mark_due_q <= mark_waits_q;
     if (fire) delay_q <= TO_STEP;
@@ -60,7 +61,7 @@ module instant_commands #(
       merge_q <= 1'b0;
       set_o <= '0;
       clear_o <= '0;
-      output_waits_q <= 1'b0;
+      change_waits_q <= 1'b0;
       mark_waits_q <= 1'b0;
       delay_q <= 3'd0;
     end

@@ -36,6 +36,7 @@ module path_commands #(
     logic [Outputs-1:0] set;
     logic [Outputs-1:0] level;
     logic [Outputs-1:0] clear;
+    logic [Outputs-1:0] plain;  // levels without pulses
 
     assign levels = input_levels_pkg::levels(inputs_i);
     assign safe   = cut_i || feed_i[feed_pkg::CLOSING];
@@ -49,6 +50,7 @@ module path_commands #(
         .load_i,
         .take_output_i(commands_i[commands_pkg::TAKE_OUTPUT]),
         .take_mark_i(commands_i[commands_pkg::TAKE_MARK]),
+        .take_pwm_i(commands_i[commands_pkg::TAKE_PWM]),
         .over_i(commands_i[commands_pkg::OVER]),
         .runs_i(commands_i[commands_pkg::RUNS]),
         .mark_o,
@@ -88,10 +90,31 @@ module path_commands #(
           .pump_i(feed_i[feed_pkg::PUMP]),
           .healthy_i(feed_i[feed_pkg::HEALTHY]),
           .level_i(level),
-          .pin_o(output_o)
+          .pin_o(plain)
       );
     end else begin : gen_no_roles
-      assign output_o = level;
+      assign plain = level;
+    end
+
+    if (Engines[card_map_pkg::ENGINE_PWM]) begin : gen_pwm
+      pwm #(
+          .Outputs(Outputs)
+      ) pulses (
+          .clk_i,
+          .rst_i,
+          .setting_i,
+          .load_i,
+          .take_i (commands_i[commands_pkg::TAKE_PWM]),
+          .apply_i(change),
+          .drop_i (safe || halt_o),
+          .feed_i,
+          .runs_i (commands_i[commands_pkg::RUNS]),
+          .level_i(plain),
+          .idle_i (output_idle_i),
+          .pin_o  (output_o)
+      );
+    end else begin : gen_no_pwm
+      assign output_o = plain;
     end
 
     probe #(
@@ -122,7 +145,7 @@ module path_commands #(
     );
 
     assign pins_state_o[pins_state_pkg::INPUTS+:32]  = levels;
-    assign pins_state_o[pins_state_pkg::OUTPUTS+:16] = 16'(output_o);
+    assign pins_state_o[pins_state_pkg::OUTPUTS+:16] = 16'(plain);
     assign pins_state_o[pins_state_pkg::MARKS+:32]   = marks;
 
     logic unused;

@@ -1,6 +1,10 @@
 """Positions that drivers rely on, as text: rtl/regs/frozen.txt holds them for the present versions."""
 
+import re
+
 from . import command_map as cm
+
+ENGINE = re.compile(r" engine (\d+):")
 
 HEAD = """# Positions of the register map and of the command layouts, one line each. scripts/generate-registers refuses a
 # description that differs from this file without a new version; a new version is written here with --freeze.
@@ -46,12 +50,23 @@ def moved(frozen, text):
     for version, lines in new.items():
         if version not in old:
             differences.append(f"{version} is not in the file: write it with --freeze")
+        elif _only_new_engines(version, old[version], lines):
+            differences.append(f"{version}: commands of a new engine: write them with --freeze")
         elif old[version] != lines:
             differences += [f"{version}: -{line}" for line in old[version] if line not in lines]
             differences += [f"{version}: +{line}" for line in lines if line not in old[version]]
             if not differences:
                 differences.append(f"{version}: in another order")
     return differences
+
+
+def _only_new_engines(version, old, new):
+    """Whether commands were added and nothing else moved, each of an engine that had no command: a driver that does not
+    know them finds no unit that asks for them."""
+    added = [line for line in new if line not in old]
+    known = set(ENGINE.findall("\n".join(old)))
+    return (version.startswith("commands ") and bool(added) and new[:len(old)] == old
+            and all(not known.issuperset(ENGINE.findall(line) or known) for line in added))
 
 
 def _sections(text):

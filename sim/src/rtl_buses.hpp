@@ -64,7 +64,8 @@ inline constexpr Field kOver{2, 1};
 inline constexpr Field kRuns{3, 1};
 inline constexpr Field kProbeWaits{4, 1};
 inline constexpr Field kProbeEnds{5, 1};
-inline constexpr unsigned kWidth = 6;
+inline constexpr Field kTakePwm{6, 1};
+inline constexpr unsigned kWidth = 7;
 }  // namespace commands
 
 namespace engines {
@@ -99,7 +100,10 @@ inline constexpr Field kEnabled{8, 1};
 inline constexpr Field kReleased{9, 1};
 inline constexpr Field kHealthy{10, 1};
 inline constexpr Field kPump{11, 1};
-inline constexpr unsigned kWidth = 12;
+inline constexpr Field kGives{12, 1};
+inline constexpr Field kRatio{13, 17};
+inline constexpr Field kRate{30, 32};
+inline constexpr unsigned kWidth = 62;
 }  // namespace feed
 
 namespace geometry_state {
@@ -201,6 +205,14 @@ inline constexpr Field kHold{3, 1};
 inline constexpr Field kBusy{4, 1};
 inline constexpr unsigned kWidth = 5;
 }  // namespace probe
+
+namespace pwm_order {
+inline constexpr Field kDuty{0, 16};
+inline constexpr Field kGain{16, 16};
+inline constexpr Field kShift{32, 5};
+inline constexpr Field kFollows{37, 1};
+inline constexpr unsigned kWidth = 38;
+}  // namespace pwm_order
 
 namespace queue_state {
 inline constexpr Field kFeedRoom{0, 16};

@@ -119,6 +119,12 @@ TEST(Commands, WhatStandsBesideThePathIsDecodedAgain) {
   EXPECT_EQ(probe.input, 9);
   EXPECT_TRUE(probe.level);
   EXPECT_TRUE(std::holds_alternative<ProbeEndCommand>(again(ProbeEndCommand{})));
+  const auto pwm = std::get<PwmCommand>(again(PwmCommand{1, 0x1234, true, 31, 0x5678}));
+  EXPECT_EQ(pwm.channel, 1);
+  EXPECT_EQ(pwm.duty, 0x1234);
+  EXPECT_TRUE(pwm.follows);
+  EXPECT_EQ(pwm.shift, 31);
+  EXPECT_EQ(pwm.gain, 0x5678);
 }
 
 TEST(Commands, CommandsOfThatThisDriverHasNoneAreNotDecoded) {
@@ -188,6 +194,8 @@ TEST(Commands, BarriersAreThreeWords) {
   EXPECT_THAT(words_of(WaitInputCommand{5, true, 0x0123456789}, 4), ElementsAre(0x04030024U, 0x23456789U, 0x00250001U));
   EXPECT_THAT(words_of(ProbeCommand{31, false}, 5), ElementsAre(0x05030025U, 0U, 0x001F0000U));
   EXPECT_THAT(words_of(ProbeEndCommand{}, 6), ElementsAre(0x06030026U, 0U, 0U));
+  EXPECT_THAT(words_of(PwmCommand{1, 0x1234, true, 5, 0x5678}, 7),
+              ElementsAre(0x07040027U, 0U, 0x05110000U, 0x56781234U));
 }
 
 TEST(Commands, LimitsOfALineAreKept) {

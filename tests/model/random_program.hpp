@@ -85,11 +85,22 @@ class Program {
     p_.write(card_map::reg::kStart, static_cast<std::uint32_t>(p_.any(1, (1U << axes_) - 1)));
   }
 
+  // PWM among the commands beside the path.
+  bool pwm = false;
+
  private:
+  void pulses() {
+    const std::uint64_t select = p_.any(0, 1) | p_.any(0, 1) << 4 | p_.any(0, 12) << 8;
+    p_.send(command_words(card_map::Opcode::Pwm, 0, number_++, 0,
+                          {{"select", select}, {"duty", p_.any(0, 0xFFFF)}, {"gain", p_.any(0, 0xFFFF)}}));
+  }
+
   // Commands that are neither paths nor barriers.
   void instants() {
     while (p_.one_in(3)) {
-      if (p_.one_in(2))
+      if (pwm && p_.one_in(2))
+        pulses();
+      else if (p_.one_in(2))
         p_.send(command_words(card_map::Opcode::Mark, 0, number_++, 0, {}));
       else
         p_.send(command_words(card_map::Opcode::Output, 0, number_++, 0,

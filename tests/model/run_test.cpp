@@ -41,6 +41,13 @@ void give_soft_limits(Pair& pair, unsigned axes) {
   pair.write(reg::kSoftLimits, static_cast<std::uint32_t>(pair.one_in(3) ? 0 : pair.any(1, 255)));
 }
 
+// Periods as short as a step's way, and some that no program sees the end of.
+void give_pulses(Pair& pair) {
+  for (const std::uint32_t period : {reg::kPwmPeriod0, reg::kPwmPeriod1})
+    pair.write(period, static_cast<std::uint32_t>(pair.one_in(3) ? pair.any(100, 700) : pair.any(500, 40'000)));
+  pair.write(reg::kPwmOutputs, static_cast<std::uint32_t>(pair.any(0, 15) | pair.any(0, 15) << 16));
+}
+
 void disturb(Pair& pair) {
   const auto clocks = [&pair] { return pair.any(1, 3000); };
   switch (pair.any(0, 9)) {
@@ -114,9 +121,13 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     const bool roles = random() % 2 == 0;
     if (roles) config.engines |= card_map::engines::kMachineInputs | card_map::engines::kSoftLimits;
     if (roles) config.inputs = 8;
+    const bool pwm = random() % 2 == 0;
+    if (pwm) config.engines |= card_map::engines::kPwm;
     Pair pair(of, config, random());
     Program program(pair);
+    program.pwm = pwm;
     program.settings();
+    if (pwm) give_pulses(pair);
     if (roles) give_roles(pair, config.axes);
     if (roles) give_soft_limits(pair, config.axes);
     const double paces[] = {1.0001, 1.5, 4, 20, 100, 700};

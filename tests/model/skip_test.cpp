@@ -283,6 +283,29 @@ TEST(Skip, PathCommands) {
   judge(model::PathCommands({}), 9,
         [](auto& in, const auto&, Random& random) { in.load.target = some_target(random); });
 }
+// Periods that end within what is tried, and motion that comes and goes.
+TEST(Skip, PathCommandsWithPwm) {
+  model::Pwm::Speed speed;
+  judge(
+      model::PathCommands({}, true), 60,
+      [&](auto& in, const auto&, Random& random) {
+        namespace reg = card_map::reg;
+        in.load.target = some_target(random);
+        if (random() % 3000 == 0) {
+          const std::uint32_t addresses[] = {reg::kPwmPeriod0, reg::kPwmPeriod1, reg::kPwmOutputs};
+          in.setting = {true, addresses[random() % 3], 100};
+          in.setting.data = in.setting.address == reg::kPwmOutputs ? static_cast<std::uint32_t>(random() % 3) * 0x8001
+                                                                   : 100 + static_cast<std::uint32_t>(random() % 1500);
+        }
+        if (random() % 100 == 0) speed.runs = !speed.runs;
+        if (random() % 300 == 0) speed.gives = random() % 4 != 0;
+        speed.silent = random() % 200 == 0;
+        if (random() % 60 == 0) speed.rate = static_cast<std::uint32_t>(random());
+        if (random() % 300 == 0) speed.ratio = random() % 3 == 0 ? 0 : 0x10000;
+        in.speed = speed;
+      },
+      true);
+}
 TEST(Skip, InputPins) {
   judge(model::InputPins(6), 9, [](auto& in, const auto&, Random& random) {
     in.pins = random() % 16 == 0;

@@ -71,7 +71,7 @@ TEST_P(EveryAxisCount, DescribesItself) {
   EXPECT_EQ(bench_.read(reg::kClockHz).data, 25'000'000u);
   EXPECT_EQ(bench_.read(reg::kGeometryDepth).data, 1024u);
   EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
-  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30005u);
+  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30006u);
   EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 3u);
   EXPECT_EQ(bench_.read(reg::kPorts).data, 0x04'04'01u);
 }

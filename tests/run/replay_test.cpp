@@ -305,6 +305,22 @@ const Commands& switching_commands() {
   return commands;
 }
 
+// Of several pulses passed over the last one holds, and comes before the silence.
+TEST(Replay, RestoresThePulses) {
+  ReplayedCommands rest;
+  Replay replay(rest, PathPlace{1, 20});
+  const driver::PwmCommand dim{0, 100, false, 0, 0};
+  const driver::PwmCommand bright{0, 60'000, true, 3, 40'000};
+  const driver::PwmCommand behind{0, 0, false, 0, 0};
+  const Commands all{dim,    piece_of_ticks(150), line_of_ticks(100), bright, line_of_ticks(50),
+                     behind, driver::EndCommand{}};
+  for (const Command& command : all) replay.put(command);
+  ASSERT_GE(rest.commands.size(), 2U);
+  EXPECT_EQ(std::get<driver::PwmCommand>(rest.commands[0]).gain, 40'000);
+  EXPECT_TRUE(std::get<FeedCommand>(rest.commands[1]).silent);
+  EXPECT_EQ(std::get<driver::PwmCommand>(rest.commands[rest.commands.size() - 2]).duty, 0);
+}
+
 Commands replayed(const PathPlace& place) {
   ReplayedCommands rest;
   Replay replay(rest, place);

@@ -58,6 +58,8 @@ class Programs {
   bool chords = false;
   // OUTPUT and MARK between paths.
   bool path_commands = false;
+  // One of so many among them is a PWM; 0: none.
+  unsigned pwm_every = 0;
   // PROBE, PROBE_END and WAIT_INPUT among them, on inputs below `inputs`.
   bool probes = false;
   unsigned inputs = 16;
@@ -111,6 +113,13 @@ class Programs {
                           {{"set", dice_.draw() & 0xFFFF}, {"clear", dice_.draw() & 0xFFFF}});
   }
 
+  Halfwords pulses() {
+    return stored_command(card_map::Opcode::Pwm, 0, 0,
+                          {{"select", dice_.below(2) | dice_.below(2) << 4 | dice_.below(4) << 8},
+                           {"duty", dice_.draw() & 0xFFFF},
+                           {"gain", dice_.draw() & 0xFFFF}});
+  }
+
   static Halfwords probe_end() { return stored_command(card_map::Opcode::ProbeEnd, 0, 0); }
   Halfwords conditional(card_map::Opcode opcode, std::uint64_t count) {
     return stored_command(opcode, 0, count, {{"condition", dice_.below(2) << 5 | dice_.below(inputs)}});
@@ -135,7 +144,10 @@ class Programs {
   // Commands that are neither paths nor barriers, some in a row now and then.
   void instants(std::vector<Halfwords>& to) {
     while (path_commands && dice_.chance(3)) {
-      to.push_back(dice_.chance(2) ? mark() : output());
+      if (pwm_every != 0 && dice_.chance(pwm_every))
+        to.push_back(pulses());
+      else
+        to.push_back(dice_.chance(2) ? mark() : output());
     }
   }
 

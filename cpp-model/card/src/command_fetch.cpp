@@ -71,6 +71,8 @@ std::array<Layout, 256> all_layouts() {
                                                                "plane");
   all[static_cast<std::uint8_t>(Opcode::Output)] =
       layout_of(Opcode::Output, {{"set", path::kCommand}, {"clear", path::kCommand}}, "");
+  all[static_cast<std::uint8_t>(Opcode::Pwm)] =
+      layout_of(Opcode::Pwm, {{"select", path::kCommand}, {"duty", path::kCommand}, {"gain", path::kCommand}}, "");
   for (const Opcode conditional : {Opcode::Probe, Opcode::WaitInput})
     all[static_cast<std::uint8_t>(conditional)] = layout_of(conditional, {{"condition", path::kCommand}}, "");
   all[static_cast<std::uint8_t>(Opcode::Line)].pause_at = kHeader;

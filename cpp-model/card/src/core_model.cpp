@@ -33,6 +33,9 @@ const CardConfig& checked(const CardConfig& config) {
   if (card_map::has_engine(config.engines, card_map::engine::kEnables) &&
       !card_map::has_engine(config.engines, card_map::engine::kPathCommands))
     throw std::invalid_argument("enables need path commands");
+  if (card_map::has_engine(config.engines, card_map::engine::kPwm) &&
+      !card_map::has_engine(config.engines, card_map::engine::kPathCommands))
+    throw std::invalid_argument("PWM needs path commands");
   return config;
 }
 
@@ -97,7 +100,7 @@ void CoreModel::reset(bool emergency_stop) {
   state_.motion = MotionCore(config_.axes, config_.idle_level, config_.engines, outputs_of(config_));
   state_.captures = captures_of(config_);
   state_.cycles = 0;
-  state_.record.reset(output_levels());
+  state_.record.reset(output_pins());
   state_.answer = {};
   show();
 }
@@ -225,7 +228,7 @@ void CoreModel::show() {
   state_.answer = {state_.registers.outputs().ack, state_.registers.outputs().error, state_.registers.outputs().data};
   state_.out.step = m.step;
   state_.out.dir = m.dir;
-  state_.out.output = output_levels();
+  state_.out.output = output_pins();
   state_.out.irq = state_.registers.outputs().irq;
   state_.out.tick = s.tick;
   state_.out.path_tick = state_.motion.engines().path_tick;
@@ -266,7 +269,7 @@ void CoreModel::record(bool cut) {
     else
       state_.record.line_step(state_.cycles, n, backwards);
   }
-  state_.record.outputs(state_.cycles, output_levels());
+  state_.record.outputs(state_.cycles, output_pins());
   if (s.record().command) state_.record.command_begins();
   if (s.record().direct) state_.record.direct_begins();
 }

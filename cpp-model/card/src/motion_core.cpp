@@ -18,7 +18,7 @@ MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, std::uint32_t en
       has_soft_limits_(card_map::has_engine(engines, card_map::engine::kSoftLimits)),
       has_enables_(card_map::has_engine(engines, card_map::engine::kEnables)),
       state_{DirectLoader(axes), Sequencer(card_map::has_engine(engines, card_map::engine::kStreaming)),
-             PathCommands(pins)} {
+             PathCommands(pins, card_map::has_engine(engines, card_map::engine::kPwm))} {
   state_.time_base = TimeBase(card_map::has_engine(engines, card_map::engine::kClasses));
   state_.limits = LimitCheck(axes);
   state_.soft_limits = SoftLimits(axes);
@@ -166,10 +166,13 @@ PathCommands::Inputs MotionCore::command_inputs(const Inputs& in, const StopCont
   c.halt = state_.probe.halt();
   c.output = state_.sequencer.takes_output(state_.probe.drops());
   c.mark = state_.sequencer.takes_mark(state_.probe.drops());
+  c.pwm = state_.sequencer.takes_pwm(state_.probe.drops());
   c.over = s.over;
   c.runs = s.path_active;
   c.load = state_.sequencer.load();
   c.setting = in.setting;
+  c.speed = {s.path_active, s.feed_active && !waits_for_drives(), s.silent, state_.feed.outputs().rate,
+             state_.time_base.outputs().ratio};
   return c;
 }
 

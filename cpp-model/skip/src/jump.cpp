@@ -385,6 +385,10 @@ bool limits_rest(model::MotionCore& core, const model::MotionCore::Inputs& in) {
   return horizon(core.state().limits, core.limit_inputs(in)) != 0 && horizon(core.state().buttons, in.roles) != 0;
 }
 
+model::PathCommands::Inputs commands_of(model::MotionCore& core, const model::MotionCore::Inputs& in) {
+  return core.command_inputs(in, core.stop_inputs(in, core.sequencer_inputs(in, core.probe_inputs(in))));
+}
+
 // Nothing is decided, and no host is at work.
 bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
   model::MotionCore::State& m = core.state();
@@ -429,7 +433,10 @@ std::uint64_t advance(model::MotionCore& core, std::uint64_t limit, const model:
   }
   if (limit == 0 || !may_jump(core, in)) return 0;
   const model::DriveEnable::Inputs drives = core.drive_inputs(in);
+  const model::PathCommands::Inputs commands = commands_of(core, in);
+  limit = std::min(limit, horizon(core.state().commands, commands));
   const std::uint64_t gone = Jump(core, record, cycle, limit).go();
+  if (gone != 0) advance(core.state().commands, commands, gone);
   if (core.has_enables()) {
     advance(core.state().drives, drives, gone);
     advance(core.state().health, {}, gone);

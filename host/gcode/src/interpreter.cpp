@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "codes.hpp"
@@ -20,6 +21,7 @@ constexpr double kMinInverseTime = 0.001;  // 1/min
 
 constexpr int kSpindleClockwise = 30;
 constexpr int kSpindleCounterClockwise = 40;
+constexpr int kSpindleOff = 50;
 constexpr int kMist = 70;
 constexpr int kFlood = 80;
 constexpr int kCoolantOff = 90;
@@ -65,9 +67,11 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
   if (!act(context) && !defer(context, before)) {
     return Outcome::kFailed;
   }
+  set_power(motions, before);
   const std::optional<int> stopping = words.code(Group::kStopping);
   if (stopping == 20 || stopping == 300) {
     change_outputs(0, machine_.outputs.of_words(), motions);
+    modes_.spindle = kSpindleOff;
     end(line, motions);
     return Outcome::kEnded;
   }
@@ -82,6 +86,8 @@ bool Interpreter::set_modes(const Context& context) {
   if (!check_uses(words, modes_.motion, context.problem)) {
     return false;
   }
+  const int spindle_before = modes_.spindle;
+  const double speed_before = modes_.spindle_speed;
   modes_.set(words);
   if (const auto tool = words.letter('T')) {
     tools_.select(static_cast<unsigned>(*tool));
@@ -91,6 +97,7 @@ bool Interpreter::set_modes(const Context& context) {
     stop(context.motions, 0);
   }
   switch_outputs(context);
+  if (modes_.spindle != spindle_before || modes_.spindle_speed != speed_before) spin_up(context.motions);
   if (const auto system = words.code(Group::kCoordinates)) {
     offsets_.select(static_cast<std::size_t>(*system <= 590 ? (*system - 540) / 10 : *system - 590 + 5));
   }
@@ -169,9 +176,9 @@ bool Interpreter::switches(int number) const {
   const machine::MachineOutputs& outputs = machine_.outputs;
   switch (number) {
     case 3:
-      return outputs.m3 != 0;
+      return (outputs.m3 | outputs.pwm) != 0;
     case 4:
-      return outputs.m4 != 0;
+      return (outputs.m4 | outputs.pwm) != 0;
     case 5:
       return outputs.spindle() != 0;
     case 7:
@@ -192,6 +199,7 @@ void Interpreter::switch_outputs(const Context& context) {
   std::uint16_t clear = 0;
   if (const auto spindle = context.words.code(Group::kSpindle)) {
     set = spindle == kSpindleClockwise ? outputs.m3 : spindle == kSpindleCounterClockwise ? outputs.m4 : 0;
+    if (spindle != kSpindleOff) set = static_cast<std::uint16_t>(set | outputs.pwm);
     clear = static_cast<std::uint16_t>(outputs.spindle() & ~set);
   }
   if (const auto coolant = context.words.code(Group::kCoolant)) {
@@ -200,6 +208,39 @@ void Interpreter::switch_outputs(const Context& context) {
     if (coolant == kCoolantOff) clear = static_cast<std::uint16_t>(clear | outputs.coolant());
   }
   change_outputs(set, clear, context.motions);
+}
+
+// A spindle takes its time to a new speed, and cutting waits for it.
+void Interpreter::spin_up(LineMotions& motions) {
+  const machine::MachineOutputs& outputs = machine_.outputs;
+  if (outputs.pwm != 0 && outputs.spin_up_s > 0 && modes_.spindle != kSpindleOff) stop(motions, outputs.spin_up_s);
+}
+
+// A laser is on in a motion at feed, never in a traverse or a probe; standing it may be where the next one would be at
+// feed. As Grbl 1.1 has it (https://github.com/gnea/grbl, doc/markdown/laser_mode.md).
+bool Interpreter::laser_may_burn(MotionKind kind) const {
+  switch (kind) {
+    case MotionKind::kLine:
+    case MotionKind::kArc:
+      return true;
+    case MotionKind::kDwell:
+      return modes_.motion == code::kLine || modes_.motion == code::kArcClockwise ||
+             modes_.motion == code::kArcCounterClockwise;
+    default:
+      return false;
+  }
+}
+
+void Interpreter::set_power(LineMotions& motions, std::size_t first) const {
+  const machine::MachineOutputs& outputs = machine_.outputs;
+  if (outputs.pwm == 0 || modes_.spindle == kSpindleOff) return;
+  const double power = std::clamp(modes_.spindle_speed / outputs.max_s, 0.0, 1.0);
+  for (std::size_t i = first; i < motions.size(); ++i) {
+    Motion& motion = motions[i];
+    if (motion.kind == MotionKind::kEnd || (outputs.laser && !laser_may_burn(motion.kind))) continue;
+    motion.power = power;
+    motion.power_follows = outputs.laser && modes_.spindle == kSpindleCounterClockwise;
+  }
 }
 
 void Interpreter::change_outputs(std::uint16_t set, std::uint16_t clear, LineMotions& motions) {

@@ -31,6 +31,7 @@ class LineMotions {
   void cut(std::size_t size) { motions_.resize(size); }
   std::size_t size() const { return motions_.size(); }
   const Motion& operator[](std::size_t i) const { return motions_[i]; }
+  Motion& operator[](std::size_t i) { return motions_[i]; }
 
  private:
   std::vector<Motion> motions_;
@@ -99,6 +100,9 @@ class Interpreter final : public Predefined {
   bool defer(const Context& context, std::size_t motions_before);
   bool depends(const WordSet& words) const;
   void switch_outputs(const Context& context);
+  void spin_up(LineMotions& motions);
+  bool laser_may_burn(MotionKind kind) const;
+  void set_power(LineMotions& motions, std::size_t first) const;
   void change_outputs(std::uint16_t set, std::uint16_t clear, LineMotions& motions);
   void stop(LineMotions& motions, double seconds);
   bool go_home(const Context& context, bool second);

@@ -10,6 +10,7 @@ void ModalState::set(const WordSet& words) {
   if (const auto extruder = words.code(Group::kExtruder)) extruder_absolute = extruder == 820;
   if (const auto retract = words.code(Group::kRetract)) retract_to_start = retract == 980;
   if (const auto speed = words.letter('S'); speed && !words.dwells_by_s()) spindle_speed = *speed;
+  if (const auto state = words.code(Group::kSpindle)) spindle = *state;
   set_path_control(words);
 }
 

@@ -32,6 +32,7 @@ struct ModalState {
   double tolerance = 0;           // mm
   bool retract_to_start = false;  // G98
   double spindle_speed = 0;       // S
+  int spindle = 50;               // M3, M4 or M5, in tenths
 
  private:
   void set_path_control(const WordSet& words);

@@ -315,8 +315,8 @@ toml::value parse(const Source& source, const std::string& text) {
   }
 }
 
-constexpr std::array<const char*, 9> kTables = {"card",  "axis",  "kinematics", "motion", "outputs",
-                                                "tools", "probe", "inputs",     "homing"};
+constexpr std::array<const char*, 10> kTables = {"card",    "axis",  "kinematics", "motion", "outputs",
+                                                 "spindle", "tools", "probe",      "inputs", "homing"};
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
@@ -352,6 +352,7 @@ bool set_tables(const Source& source, Machine& machine, const toml::table& root)
   set("kinematics", [&](const toml::table& entries) { set_kinematics(source, machine.kinematics, entries); });
   set("motion", [&](const toml::table& motion) { set_motion(source, machine.motion, motion); });
   set("outputs", [&](const toml::table& outputs) { set_outputs(source, machine, outputs); });
+  set("spindle", [&](const toml::table& spindle) { set_spindle(source, machine, spindle); });
   set("tools", [&](const toml::table& tools) { set_tools(source, machine, tools); });
   set("probe", [&](const toml::table& probe) { set_probe(source, machine.probe, probe); });
   set("inputs", [&](const toml::table& inputs) { set_inputs(source, machine, inputs); });

@@ -296,6 +296,8 @@ void Blender::make(const Way& from, const Way& to, const Frame& frame, const Tur
   made.path_control = from.motion.path_control;
   made.corner = Corner::kBlended;
   made.rapid = from.motion.rapid && to.motion.rapid;
+  made.power = std::min(from.motion.power, to.motion.power);
+  made.power_follows = from.motion.power_follows;
   if (!made.rapid) {
     const double before = feed_of(from.motion, from.length);
     const double behind = feed_of(to.motion, to.length);

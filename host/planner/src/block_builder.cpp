@@ -123,6 +123,8 @@ bool BlockBuilder::build(Block& block) {
   block.end = here_;
   block.corner = motion_.corner;
   block.distance = motion_.distance;
+  block.power = motion_.power;
+  block.power_follows = motion_.power_follows;
   switch (motion_.kind) {
     case gcode::MotionKind::kDwell:
       return build_dwell(block);

@@ -24,6 +24,7 @@ CardLimits limits_of(const driver::Identification& card) {
           card.feed_depth,
           has(card_map::engine::kAccumulator8),
           has(card_map::engine::kPathCommands) ? machine::kMaxOutputs : 0,
+          has(card_map::engine::kPwm),
           driver::has_slew_shift(card)};
 }
 

@@ -47,6 +47,7 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       settings_(settings),
       clock_hz_(card.clock_hz / machine.motion.max_override),
       axes_(card.axes),
+      pwm_(card.pwm && machine.outputs.pwm != 0),
       line_halfwords_(halfwords_of(card_map::Opcode::Line, card.axes)),
       gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kMinAxes, card.axes)))),
       junctions_(machine),
@@ -112,7 +113,9 @@ void Planner::LookAhead::read_block() {
 
 // Of its commands in the geometry queue.
 std::uint64_t Planner::LookAhead::halfwords(const Block& block) const {
-  const std::uint64_t outputs = switches(block) ? halfwords_of(card_map::Opcode::Output, axes_) : 0;
+  // Pulses may change with any block.
+  const std::uint64_t outputs = (switches(block) ? halfwords_of(card_map::Opcode::Output, axes_) : 0) +
+                                (pwm_ ? halfwords_of(card_map::Opcode::Pwm, axes_) : 0);
   switch (block.geometry) {
     case Geometry::kLine:
       return outputs + line_halfwords_;

@@ -44,6 +44,7 @@ class Planner::LookAhead {
   PlannerSettings settings_;
   double clock_hz_;  // enabled clocks a second
   unsigned axes_;    // of the card
+  bool pwm_;         // S sets pulses
   std::uint64_t line_halfwords_;
   double gap_free_ticks_;
   Junctions junctions_;

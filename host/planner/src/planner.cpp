@@ -1,6 +1,7 @@
 #include "trammel/planner/planner.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "chords.hpp"
 #include "look_ahead.hpp"
@@ -49,7 +50,11 @@ SpeedProfile profile_of(const machine::Machine& machine, const PlannerSettings& 
 
 Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
                  const PlannerSettings& settings)
-    : kinematics_(machine), look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)) {}
+    : kinematics_(machine),
+      look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)),
+      pwm_(card.pwm && machine.outputs.pwm != 0),
+      clock_hz_(card.clock_hz),
+      most_override_(machine.motion.max_override) {}
 
 Planner::~Planner() = default;
 
@@ -62,10 +67,11 @@ bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
   planned.block = entry->block;
   const Block& block = planned.block;
   if (block.geometry == Geometry::kDwell) {
-    put_dwell(planned, sink);
+    put_dwell(planned, *entry, sink);
   } else if (block.geometry == Geometry::kEnd) {
     planned.commands = planned.geometry = planned.feed = 1;
     put_outputs(planned, sink);
+    put_pulses(planned, *entry, sink);
     sink.put(other_ = driver::EndCommand{});
   } else {
     planned.seconds = entry->seconds;
@@ -80,6 +86,7 @@ bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
                                                                : 1;
     planned.commands = planned.feed + planned.geometry;
     put_outputs(planned, sink);
+    put_pulses(planned, *entry, sink);
     for (auto& piece = std::get<driver::FeedCommand>(piece_); look_ahead_->piece(piece);) sink.put(piece_);
     put_geometry(block, entry->end_ticks - entry->begin_ticks, sink);
   }
@@ -92,15 +99,48 @@ void Planner::put_outputs(PlannedBlock& planned, driver::CommandSink& sink) {
   if (!switches(planned.block)) return;
   ++planned.commands;
   ++planned.geometry;
+  ++planned.beside;
   sink.put(other_ = planned.block.outputs);
 }
 
-void Planner::put_dwell(PlannedBlock& planned, driver::CommandSink& sink) {
+// Where it changes. What follows the speed is dark in a dwell by itself.
+void Planner::put_pulses(PlannedBlock& planned, const PathEntry& entry, driver::CommandSink& sink) {
+  const Block& block = entry.block;
+  if (!pwm_ || (block.power_follows && block.power != 0 && !moves(block))) return;
+  const driver::PwmCommand pulses = pulses_of(entry);
+  if (pulses_ && pulses_->duty == pulses.duty && pulses_->follows == pulses.follows && pulses_->shift == pulses.shift &&
+      pulses_->gain == pulses.gain) {
+    return;
+  }
+  pulses_ = pulses;
+  ++planned.commands;
+  ++planned.geometry;
+  ++planned.beside;
+  sink.put(other_ = pulses);
+}
+
+// The scale is that of the path's own ticks, where rounding has given it more or less than its length has.
+driver::PwmCommand Planner::pulses_of(const PathEntry& entry) const {
+  constexpr double kFull = 65535;
+  constexpr double kSameDensity = 1e-3;
+  const Block& block = entry.block;
+  const double duty = std::round(block.power * kFull);
+  if (!block.power_follows || block.power == 0 || block.wanted == 0)
+    return {0, static_cast<std::uint16_t>(duty), false, 0, 0};
+  const double own = static_cast<double>(entry.end_ticks - entry.begin_ticks) / block.length;
+  const double density = std::abs(own - entry.density) > kSameDensity * entry.density ? own : entry.density;
+  const double rate = std::clamp(block.wanted * density / clock_hz_, 0x1p-30, 1.0);
+  const double most = std::min(kFull, std::round(duty * most_override_));
+  return driver::pwm_for_speed(0, static_cast<std::uint16_t>(duty), rate, static_cast<std::uint16_t>(most));
+}
+
+void Planner::put_dwell(PlannedBlock& planned, const PathEntry& entry, driver::CommandSink& sink) {
   std::uint64_t left = planned.block.dwell_clocks;
   planned.seconds = planned.block.dwell_seconds;
   planned.commands = std::max<std::uint64_t>(1, (left + kMaxDwell - 1) / kMaxDwell);
   planned.geometry = planned.feed = planned.commands;
   put_outputs(planned, sink);
+  put_pulses(planned, entry, sink);
   for (std::uint64_t i = 0; i < planned.feed; ++i) {
     const std::uint64_t part = std::min(left, kMaxDwell);
     sink.put(other_ = driver::DwellCommand{part});

@@ -96,7 +96,7 @@ void CommandedCourse::planned(const planner::PlannedBlock& planned, std::uint64_
   const int rank = detail_rank(block);
   if (rank <= best_rank_) return;
   best_rank_ = rank;
-  detail_command_ = first + planned.feed + (planner::switches(block) ? 1 : 0);  // these come first
+  detail_command_ = first + planned.feed + planned.beside;  // these come first
   detail_.clear();
   const double length = std::min(path.pulses(), static_cast<double>(StepRecorder::kDetailPoints));
   for (double s = 0; s <= length; s += 1) detail_.push_back(path.at(s / path.pulses()));

@@ -138,6 +138,12 @@ void configure_outputs(driver::Card& card, const machine::Machine& machine) {
   const machine::MachineOutputs& outputs = machine.outputs;
   if (outputs.safe_at_rest() != 0) card.set_output_safe(outputs.on_at_rest, outputs.safe_at_rest());
   if (outputs.safe_at_cause() != 0) card.set_output_safe_cause(outputs.on_at_cause, outputs.safe_at_cause());
+  if (outputs.pwm != 0) {
+    if (!card.has_pwm()) throw driver::ArgumentError("spindle of the machine file: the card has no PWM");
+    driver::PwmChannels channels;
+    channels[0] = {driver::pwm_period(outputs.pwm_hz, card.identification().clock_hz), outputs.pwm};
+    card.set_pwm(channels);
+  }
   if (outputs.emergency_stop_ramps) {
     if (!card.has_emergency_stop()) {
       throw driver::ArgumentError("outputs.on_emergency_stop of the machine file: the card has no emergency stop");

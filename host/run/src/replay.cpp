@@ -135,6 +135,8 @@ void Replay::put(const driver::Command& command) {
   } else if (const auto* outputs = std::get_if<driver::OutputCommand>(&command)) {
     outputs_.clear = static_cast<std::uint16_t>((outputs_.clear & ~outputs->set) | (outputs->clear & ~outputs->set));
     outputs_.set = static_cast<std::uint16_t>((outputs_.set & ~outputs_.clear) | outputs->set);
+  } else if (const auto* pulses = std::get_if<driver::PwmCommand>(&command)) {
+    pulses_ = *pulses;
   } else if (driver::counts_as_begun(command)) {
     geometry(command);
   }
@@ -161,6 +163,7 @@ void Replay::geometry(const driver::Command& command) {
 void Replay::begin(const driver::Command& command) {
   begun_ = true;
   if ((outputs_.set | outputs_.clear) != 0) next_.put(outputs_);
+  if (pulses_) next_.put(*pulses_);
   put_pieces(path_ticks_ + done_);
   next_.put(command);
 }

@@ -73,6 +73,7 @@ package card_map_pkg;
   localparam int ENGINE_ENABLES = 14;
   localparam int ENGINE_SOFT_LIMITS = 15;
   localparam int ENGINE_CAPTURE_FIFO = 16;
+  localparam int ENGINE_PWM = 17;
 
   // Registers: byte address, reset value, bits with meaning; for arrays (the address is axis 0's) also count and
   // stride in bytes, negative where the array runs downwards.
@@ -80,7 +81,7 @@ package card_map_pkg;
   localparam logic [31:0] RESET_MAGIC = 32'h54524D4C;
   localparam logic [31:0] MASK_MAGIC = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_MAP_VERSION = 12'h004;
-  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030005;
+  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030006;
   localparam logic [31:0] MASK_MAP_VERSION = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_AXES = 12'h008;
   localparam logic [31:0] RESET_AXES = 32'h00000000;
@@ -505,6 +506,12 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_FEED_WATERMARK = 12'h6C4;
   localparam logic [31:0] RESET_FEED_WATERMARK = 32'h00000000;
   localparam logic [31:0] MASK_FEED_WATERMARK = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_PWM_PERIOD_0 = 12'h6C8;
+  localparam logic [31:0] RESET_PWM_PERIOD_0 = 32'h00002710;
+  localparam logic [31:0] MASK_PWM_PERIOD_0 = 32'h07FFFFFF;
+  localparam logic [11:0] ADDR_PWM_PERIOD_1 = 12'h6CC;
+  localparam logic [31:0] RESET_PWM_PERIOD_1 = 32'h00002710;
+  localparam logic [31:0] MASK_PWM_PERIOD_1 = 32'h07FFFFFF;
   localparam logic [11:0] ADDR_OUTPUT_SAFE = 12'h700;
   localparam logic [31:0] RESET_OUTPUT_SAFE = 32'h00000000;
   localparam logic [31:0] MASK_OUTPUT_SAFE = 32'hFFFFFFFF;
@@ -520,6 +527,9 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_STREAMING = 12'h740;
   localparam logic [31:0] RESET_STREAMING = 32'h00000000;
   localparam logic [31:0] MASK_STREAMING = 32'h0000FF01;
+  localparam logic [11:0] ADDR_PWM_OUTPUTS = 12'h744;
+  localparam logic [31:0] RESET_PWM_OUTPUTS = 32'h00000000;
+  localparam logic [31:0] MASK_PWM_OUTPUTS = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_LINK_TIMEOUT = 12'h74C;
   localparam logic [31:0] RESET_LINK_TIMEOUT = 32'h00000000;
   localparam logic [31:0] MASK_LINK_TIMEOUT = 32'h0000FFFF;
@@ -896,6 +906,16 @@ package card_map_pkg;
   localparam int AT_PROBE_CONDITION = 0;
   localparam int SIZE_PROBE_CONDITION = 1;
   localparam logic [7:0] OP_PROBE_END = 8'd38;
+  localparam logic [7:0] OP_PWM = 8'd39;
+  localparam logic [4:0] FIELD_PWM_SELECT = 5'd0;
+  localparam int AT_PWM_SELECT = 0;
+  localparam int SIZE_PWM_SELECT = 1;
+  localparam logic [4:0] FIELD_PWM_DUTY = 5'd1;
+  localparam int AT_PWM_DUTY = 1;
+  localparam int SIZE_PWM_DUTY = 1;
+  localparam logic [4:0] FIELD_PWM_GAIN = 5'd2;
+  localparam int AT_PWM_GAIN = 2;
+  localparam int SIZE_PWM_GAIN = 1;
 
   // Rules for a command's axis mask, see command_mask_rule().
   localparam logic [2:0] MASK_RULE_NONE = 3'd0;
@@ -984,6 +1004,8 @@ package card_map_pkg;
         register_access = engines[ENGINE_CLASSES] ? ACCESS_SETTING : ACCESS_NONE;
       10'b01_1011_0000, 10'b01_1011_0001:
         register_access = engines[ENGINE_WATERMARKS] ? ACCESS_SETTING : ACCESS_NONE;
+      10'b01_1011_0010, 10'b01_1011_0011, 10'b01_1101_0001:
+        register_access = engines[ENGINE_PWM] ? ACCESS_SETTING : ACCESS_NONE;
       10'b01_1100_0000, 10'b01_1100_0001, 10'b01_1100_0010:
         register_access = engines[ENGINE_PATH_COMMANDS] ? ACCESS_SETTING : ACCESS_NONE;
       10'b01_1100_0011, 10'b01_1110_0100, 10'b01_1110_0101, 10'b01_1110_0110, 10'b01_1110_0111,
@@ -1065,12 +1087,16 @@ package card_map_pkg;
         register_mask = 32'h003FFFFF;
       10'b01_1011_0000, 10'b01_1011_0001:
         register_mask = engines[ENGINE_WATERMARKS] ? 32'h0000FFFF : 32'h00000000;
+      10'b01_1011_0010, 10'b01_1011_0011:
+        register_mask = engines[ENGINE_PWM] ? 32'h07FFFFFF : 32'h00000000;
       10'b01_1100_0000, 10'b01_1100_0001, 10'b01_1100_0010:
         register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'hFFFFFFFF : 32'h00000000;
       10'b01_1100_0011, 10'b01_1110_0100:
         register_mask = engines[ENGINE_ENABLES] ? 32'hFFFFFFFF : 32'h00000000;
       10'b01_1101_0000:
         register_mask = engines[ENGINE_STREAMING] ? 32'h0000FF01 : 32'h00000000;
+      10'b01_1101_0001:
+        register_mask = engines[ENGINE_PWM] ? 32'hFFFFFFFF : 32'h00000000;
       10'b01_1110_0001:
         register_mask = engines[ENGINE_MACHINE_INPUTS] ? 32'h0006FFFF : 32'h00000000;
       10'b01_1110_0010, 10'b10_???0_0101, 10'b11_100?_????:
@@ -1128,7 +1154,7 @@ package card_map_pkg;
       10'b00_0000_0000:
         register_reset = 32'h54524D4C;
       10'b00_0000_0001:
-        register_reset = 32'h00030005;
+        register_reset = 32'h00030006;
       10'b00_0000_0111:
         register_reset = 32'h00000003;
       10'b01_1001_0000, 10'b01_1001_0001, 10'b01_1001_0010:
@@ -1139,6 +1165,8 @@ package card_map_pkg;
         register_reset = 32'h0000FFFF;
       10'b01_1010_0001:
         register_reset = 32'h0007E000;
+      10'b01_1011_0010, 10'b01_1011_0011:
+        register_reset = 32'h00002710;
       default: register_reset = 32'h00000000;
     endcase
   endfunction
@@ -1152,6 +1180,8 @@ package card_map_pkg;
         register_in_limits = data[27:0] >= 28'h0000001;
       10'b01_1010_0000:
         register_in_limits = data[15:0] >= 16'h0001;
+      10'b01_1011_0010, 10'b01_1011_0011:
+        register_in_limits = data[26:0] >= 27'h0000064 && data[26:0] <= 27'h5F5E100;
       10'b10_???0_0100:
         register_in_limits = data[1:0] <= 2'h2;
       default: register_in_limits = 1'b1;
@@ -1186,6 +1216,8 @@ package card_map_pkg;
         command_known = engines[ENGINE_ARC_GENERATOR] ? 1'b1 : 1'b0;
       OP_OUTPUT, OP_MARK, OP_WAIT_INPUT, OP_PROBE, OP_PROBE_END:
         command_known = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
+      OP_PWM:
+        command_known = engines[ENGINE_PWM] ? 1'b1 : 1'b0;
       default: command_known = 1'b0;
     endcase
   endfunction
@@ -1201,6 +1233,8 @@ package card_map_pkg;
         command_to_geometry = engines[ENGINE_ARC_GENERATOR] ? 1'b1 : 1'b0;
       OP_OUTPUT, OP_MARK, OP_WAIT_INPUT, OP_PROBE, OP_PROBE_END:
         command_to_geometry = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
+      OP_PWM:
+        command_to_geometry = engines[ENGINE_PWM] ? 1'b1 : 1'b0;
       default: command_to_geometry = 1'b0;
     endcase
   endfunction
@@ -1263,6 +1297,8 @@ package card_map_pkg;
         command_count_zero = 1'b1;
       OP_OUTPUT, OP_MARK, OP_PROBE, OP_PROBE_END:
         command_count_zero = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
+      OP_PWM:
+        command_count_zero = engines[ENGINE_PWM] ? 1'b1 : 1'b0;
       default: command_count_zero = 1'b0;
     endcase
   endfunction
@@ -1286,6 +1322,8 @@ package card_map_pkg;
         command_base_halfwords = engines[ENGINE_PATH_COMMANDS] ? 6'd5 : 6'd0;
       OP_WAIT_INPUT, OP_PROBE:
         command_base_halfwords = engines[ENGINE_PATH_COMMANDS] ? 6'd6 : 6'd0;
+      OP_PWM:
+        command_base_halfwords = engines[ENGINE_PWM] ? 6'd8 : 6'd0;
       default: command_base_halfwords = 6'd0;
     endcase
   endfunction
@@ -1376,6 +1414,10 @@ package card_map_pkg;
         payload_bits = engines[ENGINE_PATH_COMMANDS] ? 16'hFFFF : 16'h0000;
       {OP_WAIT_INPUT, 6'd0}, {OP_PROBE, 6'd0}:
         payload_bits = engines[ENGINE_PATH_COMMANDS] ? 16'h003F : 16'h0000;
+      {OP_PWM, 6'd0}:
+        payload_bits = engines[ENGINE_PWM] ? 16'h1F11 : 16'h0000;
+      {OP_PWM, 6'd1}, {OP_PWM, 6'd2}:
+        payload_bits = engines[ENGINE_PWM] ? 16'hFFFF : 16'h0000;
       default: payload_bits = 16'h0000;
     endcase
   endfunction
@@ -1428,6 +1470,8 @@ package card_map_pkg;
         payload_checks = 6'b000011;
       {OP_OUTPUT, 6'd0}, {OP_OUTPUT, 6'd1}, {OP_WAIT_INPUT, 6'd0}, {OP_PROBE, 6'd0}:
         payload_checks = engines[ENGINE_PATH_COMMANDS] ? 6'b000001 : 6'b000000;
+      {OP_PWM, 6'd0}, {OP_PWM, 6'd1}, {OP_PWM, 6'd2}:
+        payload_checks = engines[ENGINE_PWM] ? 6'b000001 : 6'b000000;
       default: payload_checks = 6'b000000;
     endcase
   endfunction
@@ -1444,6 +1488,14 @@ package card_map_pkg;
     logic [2047:0] table_so_far;
 
     table_so_far = '0;
+    // pwm
+    if (engines[ENGINE_PWM]) begin
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd1, 8'(434 - (434) + 1), 10'(434),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd2, 4'd1, 4'd0, 8'd24
+      };
+    end
     // soft_limits
     if (engines[ENGINE_SOFT_LIMITS]) begin
       table_so_far = {

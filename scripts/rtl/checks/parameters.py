@@ -22,8 +22,9 @@ CAPTURES_ALONE = "ERROR_Captures_needs_MachineInputs"
 FIFO = "ERROR_CaptureFifo_needs_Captures"
 ENABLES = "ERROR_Enables_needs_PathCommands"
 SOFT = "ERROR_SoftLimits_needs_MachineInputs"
+PWM = "ERROR_Pwm_needs_PathCommands"
 FLAGS = ("Accumulator EightDirections ArcGenerator DirectMode UnderrunHold Classes Watermarks PathCommands PositionStreaming "
-         "MachineInputs CaptureFifo EmergencyStop Enables SoftLimits BuildDirty").split()
+         "MachineInputs CaptureFifo EmergencyStop Enables SoftLimits Pwm BuildDirty").split()
 # Top, parameters, and the message that must stop the reader; None: they are legal.
 CASES = [
     ("trammel_card", "Axes=1 GeometryDepth=2 FeedDepth=2", None),
@@ -60,6 +61,9 @@ CASES = [
     ("trammel_card", "EmergencyStop=1", None),
     ("trammel_card", "PathCommands=1 EmergencyStop=1 Enables=1 Axes=8 Outputs=16", None),
     ("trammel_card", "Enables=1", ENABLES),
+    ("trammel_card", "PathCommands=1 Pwm=1 Outputs=1", None),
+    ("trammel_card", "PathCommands=1 Pwm=1 Outputs=16 Axes=8", None),
+    ("trammel_card", "Pwm=1", PWM),
     ("trammel_card", "BuildId=305419896 BuildDirty=1 BoardId=1", None),
     ("card_core", "Ports=1", None),
     ("card_core", "Ports=4 Axes=8", None),

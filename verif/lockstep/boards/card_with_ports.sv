@@ -20,6 +20,7 @@ module card_with_ports #(
     parameter int          SoftLimits        = 0,
     parameter int          EmergencyStop     = 0,
     parameter int          Enables           = 0,
+    parameter int          Pwm               = 0,
     parameter int          Inputs            = 4,
     parameter int          Outputs           = 4,
     parameter logic [31:0] BuildId           = 0,

@@ -63,6 +63,7 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   traffic.enables = kEnables;
   traffic.chords_every = kChords ? 3 : 60;
   traffic.commands_every = kCommands ? 3 : 60;
+  traffic.pwm = card_map::has_engine(kEngines, card_map::engine::kPwm);
   host.wait(300);
   traffic.settings();
   while (host.clocks() < clocks) traffic.run(10, 4);

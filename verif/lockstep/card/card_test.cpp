@@ -67,6 +67,7 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   AxiHost host(card, seed);
   Traffic traffic(host, axes);
   traffic.commands_every = 6;
+  traffic.pwm = true;
   // Inputs that change by themselves in two of three runs.
   test::Switches switches(4, 15, seed);
   traffic.roles = seed % 3 != 0;

@@ -43,6 +43,8 @@ class Traffic {
   }
   // OUTPUT and MARK beside one path in so many; 0: none.
   unsigned commands_every = 0;
+  // PWM among them.
+  bool pwm = false;
   // Pieces of all classes; else feed.
   bool classes = true;
   // One path in so many is an arc in chords; 0: none.
@@ -127,6 +129,12 @@ class Traffic {
     if (one_in(6)) words.resize(1 + below(words.size()));
   }
   driver::Command beside_a_path() {
+    if (pwm && one_in(2)) {
+      driver::PwmCommand command{static_cast<std::uint8_t>(below(2)), static_cast<std::uint16_t>(below(0x10000)),
+                                 one_in(2), static_cast<std::uint8_t>(below(4)),
+                                 static_cast<std::uint16_t>(below(0x10000))};
+      return command;
+    }
     if (one_in(2)) return driver::MarkCommand{};
     return driver::OutputCommand{static_cast<std::uint16_t>(below(0x10000)),
                                  static_cast<std::uint16_t>(below(0x10000))};
@@ -468,6 +476,10 @@ inline void Traffic::settings() {
   if (one_in(2))
     host_.write(reg::kFeedWatermark, static_cast<std::uint32_t>(one_in(4) ? odd_number(16) & 0xFFFF : below(200)));
   if (one_in(2)) host_.write(reg::kStopReaction, static_cast<std::uint32_t>(below(256) | below(2) << 10));
+  if (!pwm) return;
+  if (one_in(2))
+    host_.write(one_in(2) ? reg::kPwmPeriod0 : reg::kPwmPeriod1, static_cast<std::uint32_t>(99 + below(900)));
+  if (one_in(2)) host_.write(reg::kPwmOutputs, static_cast<std::uint32_t>(below(16) << 16 | below(16)));
 }
 
 inline void Traffic::start() {

@@ -31,6 +31,7 @@ constexpr bool kSoftLimits = card_map::has_engine(TRAMMEL_ENGINES, card_map::eng
 constexpr bool kMachineInputs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kMachineInputs);
 constexpr bool kEnables = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kEnables);
 constexpr bool kEmergencyStop = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kEmergencyStop);
+constexpr bool kPwm = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPwm);
 constexpr unsigned kOutputs = 3;
 constexpr std::uint64_t kComparedSignals = 45 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
@@ -67,6 +68,7 @@ class MotionCoreBench {
     programs_.chords = kChords;
     programs_.path_commands = kPathCommands;
     programs_.probes = kPathCommands;
+    programs_.pwm_every = kPwm ? 4 : 0;
     programs_.inputs = 32;
     programs_.classes = kClasses;
     reset();
@@ -102,6 +104,7 @@ class MotionCoreBench {
     if (place_dice_.chance(in_.link_lost ? 20 : 10'000)) in_.link_lost = !in_.link_lost;
     if (place_dice_.chance(in_.session_gone ? 300 : 3000)) in_.session_gone = !in_.session_gone;
     if (kSoftLimits && !in_.setting.set && place_dice_.chance(400)) random_soft_limit();
+    if (kPwm && !in_.setting.set && place_dice_.chance(2000)) random_pwm();
     if (dice_.chance(3000)) marks_near_a_carry();
     // While a START is answered no word is written: what it finds queued is all there is.
     if (kDirectMode && !starting_ && geometry_.done() && feed_.done() && dice_.chance(start_every_)) random_start();
@@ -184,6 +187,31 @@ class MotionCoreBench {
         in_.emergency = i == 160 + at;
         clock();
       }
+    }
+    reset();
+    in_ = {};
+  }
+
+  // Where a duty follows, a path that waits for its drives is dark, whatever its piece's rate.
+  void pulses_while_drives_wait() {
+    reset();
+    in_ = {};
+    write_every_ = 1;
+    for (const auto& [address, data] :
+         {std::pair{reg::kEnableAxes, 0xFFU}, std::pair{reg::kEnable, card_map::field::kEnableManual},
+          std::pair{reg::kPwmPeriod0, 100U}, std::pair{reg::kPwmOutputs, 1U}}) {
+      in_.setting = {true, address, data};
+      clock();
+    }
+    in_.setting = {};
+    geometry_.add(
+        {stored_command(card_map::Opcode::Output, 0, 0, {{"set", ~output_idle_ & 0xFFFF}, {"clear", output_idle_}}),
+         stored_command(card_map::Opcode::Pwm, 0, 0, {{"select", 0x10}, {"duty", 0xFFFF}, {"gain", 0xFFFF}}),
+         stored_command(card_map::Opcode::Line, 1, 4000, {}, {kOnePulse / 16})});
+    feed_.add({stored_command(card_map::Opcode::Feed, 0, 4000, {{"rate", int128{1} << 63}, {"floor", 1}})});
+    for (unsigned i = 0; i < 3000; ++i) {
+      in_.setting = {i == 2000, reg::kEnable, card_map::field::kEnableManual | card_map::field::kEnableOn};
+      clock();
     }
     reset();
     in_ = {};
@@ -349,6 +377,17 @@ class MotionCoreBench {
     const auto& [address, data] = settings[dice_.below(std::size(settings))];
     in_.setting = {!dice_.chance(4), address, data};
     if (in_.setting.set) check_.event("setting", std::uint64_t{address} << 32 | data);
+  }
+
+  // Pulses that are short enough for a path.
+  void random_pwm() {
+    const bool outputs = place_dice_.chance(3);
+    in_.setting = {true,
+                   outputs                 ? reg::kPwmOutputs
+                   : place_dice_.chance(2) ? reg::kPwmPeriod0
+                                           : reg::kPwmPeriod1,
+                   outputs ? place_dice_.draw() & 0x00070007 : 100 + place_dice_.below(1000)};
+    check_.event("setting", std::uint64_t{in_.setting.address} << 32 | in_.setting.data);
   }
 
   // Places come back soon after they were lost. They change no motion, and have dice of their own, so that the programs
@@ -564,7 +603,7 @@ class MotionCoreBench {
     compare_states();
     compare_axes();
     const auto& commands = model_->commands();
-    check_.compare("output_o", dut_->output_o, model_->output_levels(latched_));
+    check_.compare("output_o", dut_->output_o, model_->output_pins(latched_));
     check_.compare("mark_o", dut_->mark_o, commands.mark());
     check_.compare("probe_o", dut_->probe_o, model_->probe_asks(in_));
     check_.compare("step_o", dut_->step_o, out.step);

@@ -15,6 +15,7 @@ void random_programs() {
   if (kStreaming) bench.streaming_set_around_the_begin();
   if (kClasses) bench.holds_before_the_path();
   if (kEnables) bench.drives_disabled_in_motion();
+  if (kEnables && kPwm) bench.pulses_while_drives_wait();
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps(), length / 200);

@@ -16,13 +16,14 @@ namespace trammel::lockstep {
 class SequencersBench {
  public:
   static constexpr unsigned kAxes = 4;
-  static constexpr std::uint64_t kComparedSignals = 36;
+  static constexpr std::uint64_t kComparedSignals = 37;
   using Stretch = Programs::Stretch;
 
   explicit SequencersBench(std::uint64_t seed)
       : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.chords = true;
     programs_.path_commands = true;
+    programs_.pwm_every = 10;
     programs_.classes = true;
     programs_.probes = true;
     reset();
@@ -385,6 +386,7 @@ class SequencersBench {
     check_.compare("incomplete", path(bus::path::kIncomplete), out.incomplete);
     const bool dropping = in_.drop;  // combinational: of the clock that is over
     check_.compare("take mark", command(bus::commands::kTakeMark), model_.takes_mark(dropping));
+    check_.compare("take PWM", command(bus::commands::kTakePwm), model_.takes_pwm(dropping));
     check_.compare("take output", command(bus::commands::kTakeOutput), model_.takes_output(dropping));
     check_.compare("probe waits", command(bus::commands::kProbeWaits), model_.probe_waits());
     check_.compare("probe ends", command(bus::commands::kProbeEnds), model_.probe_ends());

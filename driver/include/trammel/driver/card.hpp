@@ -26,6 +26,7 @@
 #include "trammel/driver/drives.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/identification.hpp"
+#include "trammel/driver/pwm.hpp"
 #include "trammel/driver/roles.hpp"
 
 namespace trammel::driver {
@@ -189,6 +190,13 @@ class Card {
   std::vector<std::optional<SoftRange>> read_soft_limits();
   // How they stop the axes; on a ramp after a reset. ArgumentError where the card has none.
   void set_soft_limit_ramps(bool ramp);
+
+  // Pulses on outputs. A channel whose period is written ends its pulse and begins anew. ArgumentError where the card
+  // has none, for outputs that it lacks and for a period beyond its limits. Three writes.
+  bool has_pwm() const;
+  void set_pwm(const PwmChannels& channels);
+  // As they stand in the card. ArgumentError where it has none.
+  PwmChannels read_pwm();
 
   // Levels that the outputs in `change` take when the card has come to rest after a fault, and at an abort: a spindle.
   void set_output_safe(std::uint16_t levels, std::uint16_t change);

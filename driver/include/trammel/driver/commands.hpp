@@ -124,8 +124,24 @@ struct ProbeCommand {
 // Barrier: end of the probing paths.
 struct ProbeEndCommand {};
 
+// The duty of a PWM channel, likewise (cards with PWM). encode() refuses a channel or a shift that is too large.
+struct PwmCommand {
+  std::uint8_t channel = 0;  // 0 or 1
+  std::uint16_t duty = 0;    // 2^-16 of the period, 65535: full; where it follows, the largest one
+  bool follows = false;      // the speed on the path, as pwm_for_speed() has it
+  std::uint8_t shift = 0;    // 0 .. 31
+  std::uint16_t gain = 0;
+};
+
+// A duty that follows the speed: `duty` at `rate` feed ticks per clock and above, less in proportion below. At `rate`
+// it is right within 2^-16 of itself or 2^-16 of the period, whichever is more; 2^-31 < rate <= 1, and below 2^-15 the
+// largest gain may give less than `duty`. Throws ArgumentError for another rate.
+PwmCommand pwm_for_speed(std::uint8_t channel, std::uint16_t duty, double rate);
+// The same up to a duty of `most` at higher speeds.
+PwmCommand pwm_for_speed(std::uint8_t channel, std::uint16_t duty, double rate, std::uint16_t most);
+
 using Command = std::variant<LineCommand, ArcCommand, ArcChordCommand, FeedCommand, DwellCommand, EndCommand,
-                             OutputCommand, MarkCommand, WaitInputCommand, ProbeCommand, ProbeEndCommand>;
+                             OutputCommand, MarkCommand, WaitInputCommand, ProbeCommand, ProbeEndCommand, PwmCommand>;
 
 // Words of the longest command of the card's, with all axes: enough for every one of encode()'s.
 inline constexpr std::size_t kMaxCommandWords = [] {

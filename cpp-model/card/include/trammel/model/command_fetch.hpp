@@ -65,10 +65,11 @@ class CommandFetch {
   bool is_end() const { return state_.opcode == card_map::Opcode::End; }
   bool is_output() const { return state_.opcode == card_map::Opcode::Output; }
   bool is_mark() const { return state_.opcode == card_map::Opcode::Mark; }
+  bool is_pwm() const { return state_.opcode == card_map::Opcode::Pwm; }
   bool is_probe() const { return state_.opcode == card_map::Opcode::Probe; }
   bool is_wait() const { return state_.opcode == card_map::Opcode::WaitInput; }
   bool is_probe_end() const { return state_.opcode == card_map::Opcode::ProbeEnd; }
-  bool is_instant() const { return is_output() || is_mark() || is_probe(); }  // neither path nor barrier
+  bool is_instant() const { return is_output() || is_mark() || is_pwm() || is_probe(); }  // neither path nor barrier
   bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
   std::uint8_t engine() const { return state_.engine; }  // what a path runs on, by its card_map::engine
   std::uint8_t mask() const { return state_.mask; }

@@ -126,8 +126,9 @@ class CoreModel {
   const Config& config() const { return config_; }
   std::uint64_t cycles() const { return state_.cycles; }
   bool has_emergency_stop() const { return card_map::has_engine(config_.engines, card_map::engine::kEmergencyStop); }
-  // Levels of the outputs at the pins.
+  // Levels of the outputs, without pulses; at their pins.
   std::uint16_t output_levels() const { return state_.motion.output_levels(state_.emergency_stop.latched()); }
+  std::uint16_t output_pins() const { return state_.motion.output_pins(state_.emergency_stop.latched()); }
   void set_steps(CardSteps* steps) { state_.record.set_steps(steps); }  // nullptr: none; not owned
 
  private:

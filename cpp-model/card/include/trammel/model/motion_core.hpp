@@ -161,11 +161,16 @@ class MotionCore {
   // No tick is taken, since the drives are not enabled.
   bool waits_for_drives() const { return has_enables_ && state_.drives.waits(); }
   bool wants_drives() const { return state_.sequencer.outputs().direct || state_.sequencer.ticking_path(); }
-  // Levels at the outputs' pins; `latched`: the emergency stop's latch is set.
+  // Levels of the outputs without pulses; `latched`: the emergency stop's latch is set.
   std::uint16_t output_levels(bool latched) const {
     const OutputRoleLevels roles{state_.drives.enabled(), state_.drives.released(), state_.health.pump(),
                                  state_.health.healthy()};
     return state_.commands.outputs(latched, roles);
+  }
+  // At their pins.
+  std::uint16_t output_pins(bool latched) const {
+    return state_.commands.pins(output_levels(latched), state_.sequencer.outputs().silent,
+                                state_.time_base.outputs().ratio == 0);
   }
   bool has_machine_inputs() const { return has_machine_inputs_; }
   bool has_soft_limits() const { return has_soft_limits_; }

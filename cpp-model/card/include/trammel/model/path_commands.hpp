@@ -1,14 +1,15 @@
-// Golden model of what commands do at their place on the path beside motion: OUTPUT and MARK.
+// Golden model of what commands do at their place on the path beside motion: OUTPUT, PWM and MARK.
 //
 // They take effect kToStep clocks after the end of the path that ran as they were decoded shows, that is with the step
 // of its last tick; where none runs, as long after they are taken. What is taken while others are on their way goes
-// with them (outputs) or follows (marks). Not thread-safe; no errors are reported.
+// with them (outputs, PWM) or follows (marks). Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
 
 #include "trammel/model/buses.hpp"
 #include "trammel/model/io_pins.hpp"
+#include "trammel/model/pwm.hpp"
 
 namespace trammel::model {
 
@@ -24,20 +25,23 @@ class PathCommands {
     bool halt = false;    // what waits is dropped, but the outputs stay
     bool output = false;  // an OUTPUT is taken; its last halfword is on the load bus
     bool mark = false;    // a MARK is taken
+    bool pwm = false;     // a PWM is taken, likewise
     bool over = false;    // event: a path has ended
     bool runs = false;    // a path is under way
     LoadWord load;
     Setting setting;
+    Pwm::Speed speed;
   };
   // All that the next clock() depends on beside its inputs.
   struct State {
     OutputPins outputs;
     OutputRoles roles;
+    Pwm pwm;
     std::uint64_t masks = 0;  // clear, set
     std::uint16_t set = 0;
     std::uint16_t clear = 0;
     bool merges = false;
-    bool output_waits = false;
+    bool output_waits = false;  // an OUTPUT, or a PWM
     bool mark_waits = false;
     bool mark_goes = false;
     bool mark = false;
@@ -49,15 +53,19 @@ class PathCommands {
   // From the clock in which a path's end shows, or a command could take effect, to the one in which it has.
   static constexpr unsigned kToStep = 7;
 
-  explicit PathCommands(const Config& config)
-      : state_{OutputPins(config.outputs, config.output_idle), OutputRoles(config.outputs, config.output_idle)} {}
+  // `pwm`: outputs may carry pulses.
+  explicit PathCommands(const Config& config, bool pwm = false)
+      : has_pwm_(pwm),
+        state_{OutputPins(config.outputs, config.output_idle), OutputRoles(config.outputs, config.output_idle),
+               Pwm(config.outputs, config.output_idle)} {}
 
   // One rising edge.
   void clock(const Inputs& in) {
-    const bool due = state_.left == 1 && !in.cut && !in.halt;
+    const bool due = this->due(in);
     state_.outputs.clock(in.cut, in.caused, due ? state_.set : std::uint16_t{0}, due ? state_.clear : std::uint16_t{0},
                          in.setting);
     state_.roles.clock(in.setting);
+    if (has_pwm_) state_.pwm.clock(pwm_inputs(in));
     state_.mark = due && state_.mark_goes;
     if (state_.mark) state_.marks = state_.marks_taken;
     if (due) state_.set = state_.clear = 0;
@@ -74,9 +82,19 @@ class PathCommands {
 
   const State& state() const { return state_; }
   State& state() { return state_; }
-  // At the pins; `latched`: the emergency stop's latch is set.
+  bool has_pwm() const { return has_pwm_; }
+  // What takes effect in this clock.
+  bool due(const Inputs& in) const { return state_.left == 1 && !in.cut && !in.halt; }
+  Pwm::Inputs pwm_inputs(const Inputs& in) const {
+    return {in.setting, in.load, in.pwm, due(in), in.cut || in.halt, in.speed};
+  }
+  // Levels without pulses; `latched`: the emergency stop's latch is set.
   std::uint16_t outputs(bool latched, const OutputRoleLevels& roles) const {
     return state_.roles.pins(state_.outputs.level(latched), roles, latched);
+  }
+  // At the pins: `level` with pulses; `at_rest`: the ratio is 0.
+  std::uint16_t pins(std::uint16_t level, bool silent, bool at_rest) const {
+    return has_pwm_ ? state_.pwm.pins(level, silent, at_rest) : level;
   }
   std::uint32_t marks() const { return state_.marks; }
   bool mark() const { return state_.mark; }  // event: a snapshot is wanted
@@ -91,7 +109,7 @@ class PathCommands {
       state_.clear = static_cast<std::uint16_t>((state_.clear & ~set) | clear);
     }
     state_.merges = in.output;
-    state_.output_waits = state_.output_waits || in.output;
+    state_.output_waits = state_.output_waits || in.output || in.pwm;
     state_.mark_waits = state_.mark_waits || in.mark;
     state_.marks_taken += in.mark ? 1 : 0;
     if (in.load.to(load_target::kCommand)) shift_in<32>(state_.masks, in.load.word);
@@ -104,6 +122,7 @@ class PathCommands {
     state_.marks_taken = state_.marks;
   }
 
+  bool has_pwm_;
   State state_;
 };
 

@@ -25,10 +25,11 @@ class RegisterFile {
                                                    card_map::engines::kDirectMode | card_map::engines::kUnderrunHold |
                                                    card_map::engines::kPathCommands | card_map::engines::kStreaming |
                                                    card_map::engines::kClasses | card_map::engines::kWatermarks;
-  static constexpr std::uint32_t kMaxEngines =
-      kDefaultEngines | card_map::engines::kArcGenerator | card_map::engines::kAccumulator8 |
-      card_map::engines::kMachineInputs | card_map::engines::kCaptures | card_map::engines::kSoftLimits |
-      card_map::engines::kEmergencyStop | card_map::engines::kEnables | card_map::engines::kCaptureFifo;
+  static constexpr std::uint32_t kMaxEngines = kDefaultEngines | card_map::engines::kArcGenerator |
+                                               card_map::engines::kAccumulator8 | card_map::engines::kMachineInputs |
+                                               card_map::engines::kCaptures | card_map::engines::kSoftLimits |
+                                               card_map::engines::kEmergencyStop | card_map::engines::kEnables |
+                                               card_map::engines::kCaptureFifo | card_map::engines::kPwm;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8

@@ -132,9 +132,10 @@ class Sequencer {
     return state_.path == Path::Engine && (!state_.drained || state_.now < state_.drained_at + kEngineJudged);
   }
 
-  // An OUTPUT, a MARK is taken in this clock.
+  // An OUTPUT, a MARK, a PWM is taken in this clock.
   bool takes_output(bool drop) const { return state_.geometry.decoded() && state_.geometry.is_output() && !drop; }
   bool takes_mark(bool drop) const { return state_.geometry.decoded() && state_.geometry.is_mark() && !drop; }
+  bool takes_pwm(bool drop) const { return state_.geometry.decoded() && state_.geometry.is_pwm() && !drop; }
   // A PROBE is decoded and no path runs; a WAIT_INPUT, a PROBE_END has begun.
   bool probe_waits() const {
     return state_.geometry.decoded() && state_.geometry.is_probe() && state_.path == Path::None;

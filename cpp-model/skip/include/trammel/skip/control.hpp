@@ -126,8 +126,12 @@ inline std::uint64_t horizon(const model::PathCommands& block, const model::Path
       in.cut || in.halt || in.output || in.mark || in.load.to(model::load_target::kCommand) || in.setting.set;
   const bool waits = s.output_waits || s.mark_waits;
   if (in.caused && !s.outputs.safe()) return 0;
-  return forever_if(!events && s.left == 0 && !s.merges && !s.mark && (!waits || (in.runs && !in.over)));
+  const bool rests = !events && s.left == 0 && !s.merges && !s.mark && (!waits || (in.runs && !in.over));
+  if (!rests || in.pwm) return 0;
+  return block.has_pwm() ? s.pwm.quiet_clocks(block.pwm_inputs(in)) : kForever;
 }
-inline void advance(model::PathCommands&, const model::PathCommands::Inputs&, std::uint64_t) {}
+inline void advance(model::PathCommands& block, const model::PathCommands::Inputs& in, std::uint64_t clocks) {
+  if (block.has_pwm()) block.state().pwm.pass(block.pwm_inputs(in), clocks);
+}
 
 }  // namespace trammel::skip

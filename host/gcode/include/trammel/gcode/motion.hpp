@@ -41,7 +41,10 @@ struct Motion {
   std::uint32_t turns = 0;  // full turns beyond the first way to the end; axes outside the plane move evenly: a helix
   std::uint16_t set = 0;    // kOutput: outputs that are switched on, before the motion behind it; bit n: output n
   std::uint16_t clear = 0;  // and off
-  bool probe_away = false;  // kProbe: until the probe is free, else until it is touched
+  // What S asks for in it, 0 .. 1 of max_s: the spindle's pulses, 0 where it is off and where a laser is dark.
+  double power = 0;
+  bool power_follows = false;    // the speed on the path: at the motion's feed it is `power`
+  bool probe_away = false;       // kProbe: until the probe is free, else until it is touched
   bool probe_must_trip = false;  // a way to the target without that is an error
 };
 

@@ -100,6 +100,13 @@ struct MachineOutputs {
   std::uint16_t m7 = 0;  // mist
   std::uint16_t m8 = 0;  // flood
 
+  // Outputs whose pulses S sets; M3 and M4 switch them on, too. The table [spindle]; without it S has no effect.
+  std::uint16_t pwm = 0;
+  double pwm_hz = 1000;  // 1 .. 10^6
+  double max_s = 1000;   // the S of full pulses, > 0
+  bool laser = false;    // dark in traverses; M4: power follows the speed on the path; off at the cause of a stop
+  double spin_up_s = 0;  // after M3, M4 and each new S; not of a laser
+
   // Switched by the card itself, to 0 (off) or to 1 (on): an output is in one of the two.
   std::uint16_t off_at_cause = 0;  // in the clock of a fault, and at an abort: a laser
   std::uint16_t on_at_cause = 0;
@@ -122,11 +129,13 @@ struct MachineOutputs {
   // How the emergency stop stops the axes: on a ramp, or at once; none given: as the card has it.
   std::optional<bool> emergency_stop_ramps;
 
-  std::uint16_t spindle() const { return m3 | m4; }
+  std::uint16_t spindle() const { return m3 | m4 | pwm; }
   std::uint16_t coolant() const { return m7 | m8; }
   std::uint16_t of_words() const { return spindle() | coolant(); }
   std::uint16_t roles() const { return enable | brake | charge_pump | healthy; }
-  std::uint16_t safe_at_cause() const { return off_at_cause | on_at_cause; }
+  std::uint16_t safe_at_cause() const {
+    return static_cast<std::uint16_t>(off_at_cause | on_at_cause | (laser ? pwm : 0));
+  }
   std::uint16_t safe_at_rest() const { return off_at_rest | on_at_rest; }
   std::uint16_t safe() const { return safe_at_cause() | safe_at_rest(); }
   std::uint16_t all() const { return of_words() | safe() | roles(); }

@@ -76,6 +76,8 @@ struct Block {
   Pulses start{};
   Pulses end{};
   driver::OutputCommand outputs;  // what is switched where it begins
+  double power = 0;               // 0 .. 1: the spindle's pulses in it
+  bool power_follows = false;     // the speed; at `wanted` it is `power`
 
   // Motions: kLine, kArc, kArcChord, kChords.
   bool rapid = false;

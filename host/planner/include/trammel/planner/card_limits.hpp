@@ -18,6 +18,7 @@ struct CardLimits {
   std::uint32_t feed_depth = 2560;
   bool eight_directions = false;  // arcs on the accumulator may go in 8 directions, and shall
   unsigned outputs = 0;           // that commands on the path can switch, up to 16; 0: it has no such commands
+  bool pwm = false;               // outputs may carry pulses
   bool slew_shifts = false;       // a piece may say that the time base slews faster (FeedCommand::slew_shift)
 };
 

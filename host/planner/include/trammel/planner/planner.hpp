@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "trammel/driver/command_sink.hpp"
 #include "trammel/driver/commands.hpp"
@@ -52,9 +53,12 @@ struct PlannedBlock {
   double velocity_jump = 0;              // mm/s, the largest of an axis at its end, where it has a corner
   double acceleration_step = 0;          // mm/s^2, at its end, where it has no corner and the curvature changes
   std::uint64_t commands = 0;            // put
+  std::uint64_t beside = 0;              // of these, the first ones: what takes effect where the block begins
   std::uint64_t geometry = 0;            // of these, into the geometry queue: paths, barriers, outputs
   std::uint64_t feed = 0;                // and into the feed queue: pieces and barriers
 };
+
+struct PathEntry;
 
 class Planner {
  public:
@@ -76,7 +80,9 @@ class Planner {
   class LookAhead;
 
   void put_outputs(PlannedBlock& planned, driver::CommandSink& sink);
-  void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
+  void put_pulses(PlannedBlock& planned, const PathEntry& entry, driver::CommandSink& sink);
+  driver::PwmCommand pulses_of(const PathEntry& entry) const;
+  void put_dwell(PlannedBlock& planned, const PathEntry& entry, driver::CommandSink& sink);
   void put_geometry(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_line(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
@@ -84,6 +90,10 @@ class Planner {
 
   kinematics::Kinematics kinematics_;
   std::unique_ptr<LookAhead> look_ahead_;
+  bool pwm_;         // S sets pulses
+  double clock_hz_;  // of the card
+  double most_override_;
+  std::optional<driver::PwmCommand> pulses_;  // put last
   driver::Command line_{driver::LineCommand{}};
   driver::Command piece_{driver::FeedCommand{}};
   driver::Command other_{driver::EndCommand{}};

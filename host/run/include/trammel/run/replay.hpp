@@ -76,6 +76,7 @@ class Replay final : public driver::CommandSink {
   std::uint64_t done_ = 0;         // of the path at the place
   std::deque<Piece> pieces_;       // that end behind the paths passed over
   driver::OutputCommand outputs_;
+  std::optional<driver::PwmCommand> pulses_;  // that were in force; a program has them on one channel
   bool begun_ = false;
 };
 

@@ -12,7 +12,7 @@ namespace trammel::card_map {
 
 inline constexpr std::size_t kMaxAxes = 8;
 inline constexpr std::uint32_t kMagicValue = 0x54524D4C;
-inline constexpr std::uint32_t kMapVersionValue = 0x00030005;
+inline constexpr std::uint32_t kMapVersionValue = 0x00030006;
 inline constexpr std::uint32_t kCommandsVersionValue = 3;
 inline constexpr std::uint32_t kWindowBytes = 4096;
 
@@ -73,6 +73,7 @@ inline constexpr std::uint32_t kEmergencyStop = 13;  // A pin for the emergency 
 inline constexpr std::uint32_t kEnables = 14;     // Roles of outputs: drive enable, brake, charge pump, card healthy.
 inline constexpr std::uint32_t kSoftLimits = 15;  // Soft limits: comparators of the position at both ends of each axis.
 inline constexpr std::uint32_t kCaptureFifo = 16;  // A queue of 16 captures.
+inline constexpr std::uint32_t kPwm = 17;          // PWM on two channels of outputs, and the command PWM.
 }  // namespace engine
 
 // The same as masks.
@@ -94,11 +95,12 @@ inline constexpr std::uint32_t kEmergencyStop = 0x2000;
 inline constexpr std::uint32_t kEnables = 0x4000;
 inline constexpr std::uint32_t kSoftLimits = 0x8000;
 inline constexpr std::uint32_t kCaptureFifo = 0x10000;
+inline constexpr std::uint32_t kPwm = 0x20000;
 }  // namespace engines
-inline constexpr std::array<std::string_view, 17> kEngineNames{
-    "lines",         "accumulator",    "accumulator_8", "arc_generator", "jerk",        "direct_mode",
-    "underrun_hold", "path_commands",  "streaming",     "classes",       "watermarks",  "machine_inputs",
-    "captures",      "emergency_stop", "enables",       "soft_limits",   "capture_fifo"};
+inline constexpr std::array<std::string_view, 18> kEngineNames{
+    "lines",         "accumulator",    "accumulator_8", "arc_generator", "jerk",         "direct_mode",
+    "underrun_hold", "path_commands",  "streaming",     "classes",       "watermarks",   "machine_inputs",
+    "captures",      "emergency_stop", "enables",       "soft_limits",   "capture_fifo", "pwm"};
 
 // What a register does on an access; a write to Constant, Live and Snapshot is refused as READ_ONLY, a read of
 // Command as WRITE_ONLY.
@@ -266,11 +268,14 @@ inline constexpr std::uint32_t kStopReaction = 0x684;
 inline constexpr std::uint32_t kIrqEnable = 0x688;
 inline constexpr std::uint32_t kGeometryWatermark = 0x6C0;
 inline constexpr std::uint32_t kFeedWatermark = 0x6C4;
+inline constexpr std::uint32_t kPwmPeriod0 = 0x6C8;
+inline constexpr std::uint32_t kPwmPeriod1 = 0x6CC;
 inline constexpr std::uint32_t kOutputSafe = 0x700;
 inline constexpr std::uint32_t kInputPolarity = 0x704;
 inline constexpr std::uint32_t kOutputSafeCause = 0x708;
 inline constexpr std::uint32_t kOutputRoles = 0x70C;
 inline constexpr std::uint32_t kStreaming = 0x740;
+inline constexpr std::uint32_t kPwmOutputs = 0x744;
 inline constexpr std::uint32_t kLinkTimeout = 0x74C;
 inline constexpr std::uint32_t kWatchdog = 0x780;
 inline constexpr std::uint32_t kStopCauses = 0x784;
@@ -491,6 +496,10 @@ inline constexpr std::uint32_t kOutputRolesBrakeShift = 16;
 inline constexpr std::uint32_t kStreamingOn = 0x1;
 inline constexpr std::uint32_t kStreamingStalePeriods = 0xFF00;
 inline constexpr std::uint32_t kStreamingStalePeriodsShift = 8;
+inline constexpr std::uint32_t kPwmOutputsChannel0 = 0xFFFF;
+inline constexpr std::uint32_t kPwmOutputsChannel0Shift = 0;
+inline constexpr std::uint32_t kPwmOutputsChannel1 = 0xFFFF0000;
+inline constexpr std::uint32_t kPwmOutputsChannel1Shift = 16;
 inline constexpr std::uint32_t kStopCausesAnyStep = 0xFF;
 inline constexpr std::uint32_t kStopCausesAnyStepShift = 0;
 inline constexpr std::uint32_t kStopCausesShared = 0xFF00;
@@ -544,9 +553,9 @@ inline constexpr std::uint32_t kModeInvertFirst = 0x4;
 inline constexpr std::uint32_t kModeInvertSecond = 0x8;
 }  // namespace field
 
-inline constexpr std::array<Register, 177> kRegisters{{
+inline constexpr std::array<Register, 180> kRegisters{{
     {"MAGIC", 0x000, 1, 0, Access::Constant, 0x54524D4C, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30005, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30006, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"AXES", 0x008, 1, 0, Access::Constant, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"CLOCK_HZ", 0x00C, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"GEOMETRY_DEPTH", 0x014, 1, 0, Access::Constant, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -681,11 +690,16 @@ inline constexpr std::array<Register, 177> kRegisters{{
     {"IRQ_ENABLE", 0x688, 1, 0, Access::Setting, 0x0, 0x3FFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"GEOMETRY_WATERMARK", 0x6C0, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
     {"FEED_WATERMARK", 0x6C4, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
+    {"PWM_PERIOD_0", 0x6C8, 1, 0, Access::Setting, 0x2710, 0x7FFFFFF, 0x7FFFFFF, 100, 0x5F5E100, 17, 0x0, 0, false,
+     false},
+    {"PWM_PERIOD_1", 0x6CC, 1, 0, Access::Setting, 0x2710, 0x7FFFFFF, 0x7FFFFFF, 100, 0x5F5E100, 17, 0x0, 0, false,
+     false},
     {"OUTPUT_SAFE", 0x700, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
     {"INPUT_POLARITY", 0x704, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
     {"OUTPUT_SAFE_CAUSE", 0x708, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
     {"OUTPUT_ROLES", 0x70C, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
     {"STREAMING", 0x740, 1, 0, Access::Setting, 0x0, 0xFF01, 0x0, 0, 0x0, 8, 0x0, 0, false, false},
+    {"PWM_OUTPUTS", 0x744, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 17, 0x0, 0, false, false},
     {"LINK_TIMEOUT", 0x74C, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"WATCHDOG", 0x780, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"STOP_CAUSES", 0x784, 1, 0, Access::Setting, 0x0, 0x6FFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, false},
@@ -813,6 +827,7 @@ inline constexpr std::uint8_t kEnables =
     22;  // Drive enable, brake, charge pump and card healthy: roles of outputs, and the sequence of the drives.
 inline constexpr std::uint8_t kSoftLimits =
     23;  // Soft limits: comparators of the position, beside the axes' settings; SOFT_LIMITS switches them on.
+inline constexpr std::uint8_t kPwm = 24;  // Pulse width modulation on outputs: channels, whose duty commands set (PWM).
 }  // namespace unit
 
 // Units on the load bus, of their first instance.
@@ -824,7 +839,7 @@ inline constexpr unsigned kPathCommands = 12;
 inline constexpr unsigned kNone = 31;
 }  // namespace load_unit
 
-inline constexpr std::array<Unit, 23> kUnits{{
+inline constexpr std::array<Unit, 24> kUnits{{
     {"time_base", 1, 1, 1, 0, UnitCount::Fixed, 1, true, 1600, 0, 1612, 0, 0, 31, {9, 0, 0, 0, 0, 0, 0, 0}},
     {"stop_control", 2, 1, 4, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"queues", 3, 1, 0, 0, UnitCount::Fixed, 2, true, 1728, 0, 1728, 0, 1, 31, {10, 0, 0, 0, 0, 0, 0, 0}},
@@ -848,6 +863,7 @@ inline constexpr std::array<Unit, 23> kUnits{{
     {"place", 21, 1, 0, 0, UnitCount::Fixed, 1, true, 1984, 0, 1992, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"enables", 22, 1, 0, 14, UnitCount::Fixed, 1, true, 1936, 0, 1976, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"soft_limits", 23, 1, 0, 15, UnitCount::Axes, 0, true, 2080, 0, 2084, 0, 32, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"pwm", 24, 1, 0, 17, UnitCount::Fixed, 2, true, 1736, 0, 1736, 0, 1, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
 }};
 
 // What decides a card's descriptors.
@@ -1027,6 +1043,7 @@ enum class Opcode : std::uint8_t {
   WaitInput = 36,  // Barrier: both queues wait for each other, then for an input or for `count` clocks.
   Probe = 37,      // Arms the probe for the paths up to PROBE_END, once no path runs.
   ProbeEnd = 38,   // Barrier: end of the probing paths; where the probe has tripped it waits for CONTROL.probe_clear.
+  Pwm = 39,        // Sets the duty of a PWM channel with the last tick of the path before it.
 };
 
 inline constexpr std::size_t kMaxFields = 11;
@@ -1080,7 +1097,7 @@ struct Command {
   std::array<Field, kMaxFields> fields;
 };
 
-inline constexpr std::array<Command, 11> kCommands{{
+inline constexpr std::array<Command, 12> kCommands{{
     {"LINE",
      Opcode::Line,
      true,
@@ -1229,6 +1246,25 @@ inline constexpr std::array<Command, 11> kCommands{{
      1,
      {{Field{"condition", FieldKind::Unsigned, 16, 0, 1, false, 0, 0x0, 0x3F, 0x0, 0, false}}}},
     {"PROBE_END", Opcode::ProbeEnd, true, true, 7, true, MaskRule::None, 0, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"PWM",
+     Opcode::Pwm,
+     true,
+     false,
+     17,
+     true,
+     MaskRule::None,
+     0,
+     0,
+     0,
+     0,
+     0x0,
+     8,
+     0,
+     0,
+     3,
+     {{Field{"select", FieldKind::Unsigned, 16, 0, 1, false, 0, 0x0, 0x1F11, 0x0, 0, false},
+       Field{"duty", FieldKind::Unsigned, 16, 1, 1, false, 0, 0x0, 0x0, 0x0, 0, false},
+       Field{"gain", FieldKind::Unsigned, 16, 2, 1, false, 0, 0x0, 0x0, 0x0, 0, false}}}},
 }};
 
 // Layout of a command, nullptr when the opcode has no meaning.
