@@ -3,7 +3,7 @@
 #   trammel_command      the trammel command
 #   trammel_rtl          the card's sources, with their file list, FuseSoC core and lint waivers
 #   trammel_python       Python's package, where it is built (bindings/python)
-#   trammel_machine      the default machine file, to be changed
+#   trammel_machine      the default machine file and the default world, to be changed
 #   trammel_licence
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -11,7 +11,8 @@ include(CMakePackageConfigHelpers)
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
 set(trammel_cpp_libraries trammel_card_map trammel_frames trammel_model trammel_skip trammel_methods trammel_driver
-  trammel_transport trammel_machine trammel_kinematics trammel_gcode trammel_planner trammel_chart trammel_run trammel_sim)
+  trammel_transport trammel_machine trammel_kinematics trammel_gcode trammel_planner trammel_chart trammel_run trammel_sim
+  trammel_world)
 install(TARGETS ${trammel_cpp_libraries} trammel_c EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
@@ -32,6 +33,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/host/chart/include/"
   "${PROJECT_SOURCE_DIR}/host/run/include/"
   "${PROJECT_SOURCE_DIR}/sim/include/"
+  "${PROJECT_SOURCE_DIR}/world/include/"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp"
   PATTERN "lockstep.hpp" EXCLUDE PATTERN "engines.hpp" EXCLUDE)  # of no use without the Verilated card
 install(EXPORT trammel-targets NAMESPACE trammel:: DESTINATION "${trammel_package_dir}"
@@ -65,6 +67,6 @@ foreach(file IN ITEMS trammel.f trammel.core lint/waivers.vlt LISTS sources)
     COMPONENT trammel_rtl)
 endforeach()
 
-install(FILES "${PROJECT_SOURCE_DIR}/examples/machine.toml" DESTINATION "${trammel_data_dir}"
+install(FILES "${PROJECT_SOURCE_DIR}/examples/machine.toml" "${PROJECT_SOURCE_DIR}/examples/world.toml" DESTINATION "${trammel_data_dir}"
   COMPONENT trammel_machine)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT trammel_licence)

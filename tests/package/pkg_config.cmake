@@ -26,7 +26,7 @@ endfunction()
 flags(c --cflags --libs trammel)
 run("${C_COMPILER}" -std=c99 "${C_PROGRAM}" -o c_program ${c})
 run("${CMAKE_COMMAND}" -E env "LD_LIBRARY_PATH=${PREFIX}/${LIBDIR}" ./c_program)
-flags(cpp --cflags --libs trammel-sim)
+flags(cpp --cflags --libs trammel-world)
 run("${CXX_COMPILER}" -std=c++17 ${CXX_FLAGS} "${CXX_PROGRAM}" -o cpp_program ${cpp})
 run(./cpp_program)
 

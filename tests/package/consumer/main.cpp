@@ -8,6 +8,8 @@
 #include "trammel/driver/stream.hpp"
 #include "trammel/model/deviation_accumulator.hpp"
 #include "trammel/sim/engine.hpp"
+#include "trammel/world/engine_in_world.hpp"
+#include "trammel/world/world_file.hpp"
 
 int main() {
   using namespace trammel;
@@ -17,6 +19,13 @@ int main() {
   const driver::Snapshot snapshot = card.read_snapshot();
   std::printf("%s: x %d, y %d\n", std::string(card_map::find_register(card_map::reg::kMagic).entry->name).c_str(),
               snapshot.position[0], snapshot.position[1]);
+  // The same line in a machine: its carriage follows.
+  world::World machine(world::default_world(), 1'000'000);
+  world::EngineInWorld in_machine(sim::make_model_engine({}), machine);
+  driver::Card moved = driver::Card::open(in_machine);
+  driver::run_line(moved, driver::plan_line(moved.timing(), {20, 40}, std::chrono::milliseconds(1)));
+  in_machine.wait(1'000'000);
+  const bool followed = machine.carriage(0).place() == 20 && machine.carriage(1).place() == 40;
   const model::DeviationAccumulator accumulator;
-  return snapshot.position[0] == 20 && snapshot.position[1] == 40 && !accumulator.outputs().step_x ? 0 : 1;
+  return snapshot.position[0] == 20 && snapshot.position[1] == 40 && !accumulator.outputs().step_x && followed ? 0 : 1;
 }
