@@ -31,6 +31,7 @@
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/card_place.hpp"
 #include "trammel/run/runner.hpp"
+#include "world/world_command.hpp"
 
 namespace trammel::app {
 namespace {
@@ -75,6 +76,7 @@ int run_command_line(int argc, char** argv, const char* version) {
   add_machine_command(app);
   add_calibrate_command(app);
   add_serve_command(app);
+  add_world_command(app);
   add_steps_command(app);
   add_methods_command(app);
   add_reproduce_command(app);

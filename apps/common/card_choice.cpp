@@ -53,6 +53,9 @@ std::string place_and_cure(driver::Card& card, const machine::Machine& machine) 
 void clear_with_note(driver::Card& card) {
   const std::string faults = card.read_fault_text();
   card.clear_faults();
+  if ((card.read_faults() & card_map::field::kFaultEmergencyStop) != 0) {
+    throw UsageError("--card: the emergency stop is pressed: release its button first");
+  }
   tell("note", "cleared the card's fault of before: " + faults);
 }
 

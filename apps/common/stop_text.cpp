@@ -119,6 +119,10 @@ std::vector<std::string> fault_cures(const machine::Machine& machine, const Stop
     if (has(card.limits.minus | card.limits.plus, n)) cures.push_back(limit_cure(machine, card, n));
     if (has(card.limits.drive_fault, n)) cures.push_back(drive_cure(machine, n));
   }
+  if ((card.faults() & card_map::field::kFaultEmergencyStop) != 0) {
+    cures.emplace_back(
+        "release the button of the emergency stop, then clear the fault with --clear-faults to go on from there");
+  }
   if (cures.empty() && card.faults() != 0) {
     cures.emplace_back("remove the cause, and clear the fault with --clear-faults to go on from there");
   }

@@ -123,6 +123,28 @@ class Switches {
   std::size_t next_ = 0;
 };
 
+// All that the card makes, and what it makes since somebody has begun to count.
+class ServedPath final : public driver::StepSink {
+ public:
+  void pin_step(const driver::PinStep& /*step*/) override {}
+  void path_step(const driver::PathStep& step) override {
+    whole_.path_step(step);
+    counted_.path_step(step);
+  }
+  std::string text() const {
+    return fmt::format("path: {} steps, identity {}; without the commands' numbers {}", whole_.count(), whole_.text(),
+                       whole_.unnumbered_text());
+  }
+  world::PathCount count(bool anew) {
+    if (anew) counted_ = {};
+    return {counted_.count(), counted_.unnumbered_text()};
+  }
+
+ private:
+  run::PathIdentity whole_;
+  run::PathIdentity counted_;
+};
+
 // What a program or a person needs to connect, on standard output at once.
 void tell_where(const transport::Listener& listener, const std::string& token) {
   to_standard_output(
@@ -135,13 +157,15 @@ bool is_loopback(const std::string& address) {
 }
 
 void serve_card(const ServeOptions& options) {
-  const serve::Settings settings = settings_of(options);
+  serve::Settings settings = settings_of(options);
   Switches switches(options);
   const std::unique_ptr<world::World> world = options.world.make(options.clock_hz, switches.events());
   const std::unique_ptr<transport::Listener> listener = listener_of(options);
   const std::unique_ptr<sim::Engine> engine = in_world(world.get(), sim::make_engine(engine_of(options)));
-  run::PathIdentity path;
+  ServedPath path;
   engine->set_sink(&path);
+  settings.world = world.get();
+  settings.path = [&path](bool anew) { return path.count(anew); };
   serve::CardServer server(*engine, *listener, settings);
   end_at_signals();
   if (!options.terminal && !is_loopback(options.listen)) {
@@ -164,8 +188,7 @@ void serve_card(const ServeOptions& options) {
     lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
   say(fmt::format("served {} clients, {} refused; {} requests, {} damaged; {:.3f} s of card time{}", counts.clients,
                   counts.refused, counts.requests, counts.dropped, seconds, lockstep));
-  say(fmt::format("path: {} steps, identity {}; without the commands' numbers {}", path.count(), path.text(),
-                  path.unnumbered_text()));
+  say(path.text());
   if (world) say(world_text(*world, "; "));
 }
 

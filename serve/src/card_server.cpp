@@ -9,6 +9,7 @@
 #include "pace.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
+#include "world_clients.hpp"
 
 namespace trammel::serve {
 namespace {
@@ -40,6 +41,7 @@ CardServer::CardServer(sim::Engine& engine, transport::Listener& listener, Setti
       listener_(listener),
       settings_(std::move(settings)),
       pace_(std::make_unique<Pace>(engine, settings_)),
+      at_world_(std::make_unique<WorldClients>(*this)),
       motion_([this](bool write, std::uint32_t address, std::uint32_t data) { return make(write, address, data); }) {}
 
 CardServer::~CardServer() = default;
@@ -68,6 +70,7 @@ std::size_t CardServer::readers() const {
 void CardServer::turn() {
   serve_clients();
   admit();
+  at_world_->serve();
   drain_leaving();
   pass_time();
 }
@@ -104,6 +107,9 @@ void CardServer::serve_client(Client& client, std::chrono::nanoseconds longest) 
   } catch (const driver::LinkError& error) {
     count();
     lose_client(client, error.what());
+  } catch (const GoesToWorld& hello) {
+    count();
+    send_to_world(client, hello.may_press, hello.came);
   } catch (const Unwanted& error) {
     count();
     std::unique_ptr<transport::ByteStream> stream = client.take_stream();
@@ -112,10 +118,26 @@ void CardServer::serve_client(Client& client, std::chrono::nanoseconds longest) 
   }
 }
 
+// It is no client of the card any more. It could not move the card: its hello ended that.
+void CardServer::send_to_world(Client& client, bool may_press, std::string came) {
+  std::unique_ptr<transport::ByteStream> stream = client.take_stream();
+  forget(client);
+  try {
+    if (!listener_.ends_streams()) throw Unwanted("a terminal has one client, which is the card's: serve it on a port");
+    at_world_->admit(stream, may_press, std::move(came));
+  } catch (const Unwanted& error) {
+    refuse(std::move(stream), error.what());
+  }
+}
+
+void CardServer::forget(Client& client) {
+  if (!client.may_move()) reading_session_ = client.reading_session();
+  clients_.erase(std::find_if(clients_.begin(), clients_.end(), [&](const auto& c) { return c.get() == &client; }));
+}
+
 void CardServer::lose_client(Client& client, const std::string& why) {
   const bool could_move = client.may_move();
-  if (!could_move) reading_session_ = client.reading_session();
-  clients_.erase(std::find_if(clients_.begin(), clients_.end(), [&](const auto& c) { return c.get() == &client; }));
+  forget(client);
   if (could_move) return hold(why);
   settings_.note(fmt::format("client gone ({})", why));
 }
@@ -151,10 +173,10 @@ void CardServer::drain_leaving() {
   leaving_.erase(std::remove_if(leaving_.begin(), leaving_.end(), gone), leaving_.end());
 }
 
-// Of who moves the card, else of all.
+// Of who moves the card, else of all, those at the machine among them.
 std::optional<std::uint64_t> CardServer::clocks_to_next() const {
   if (const Client* const client = mover()) return client->clocks_to_next();
-  std::optional<std::uint64_t> next;
+  std::optional<std::uint64_t> next = at_world_->clocks_to_next();
   for (const auto& client : clients_) {
     if (const auto clocks = client->clocks_to_next()) next = std::min(next.value_or(*clocks), *clocks);
   }

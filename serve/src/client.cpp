@@ -17,7 +17,8 @@ using std::chrono::steady_clock;
 
 constexpr std::uint8_t kMeasured = 0x55;  // with which a serial line begins
 constexpr char kHello[] = "trammel 1";
-constexpr std::uint64_t kMaxRubbish = 64 * 1024;  // bytes without a frame among them
+constexpr char kToWorld[] = "trammel 1 at world";  // and no token, which has no spaces
+constexpr std::uint64_t kMaxRubbish = 64 * 1024;   // bytes without a frame among them
 constexpr char kWait[] = "wait ";
 constexpr std::size_t kLongestText = 100;
 constexpr auto kSilentStill = std::chrono::seconds(1);  // a program that lives has written by then
@@ -139,7 +140,18 @@ void CardServer::Client::begin() {
   if (!may_move_ && server_.readers() > kMaxReaders) throw Unwanted("as many clients read as the server takes");
 }
 
+// "trammel 1 at world", or with a space and the token behind it.
+void CardServer::Client::go_to_world(const std::string& line) {
+  const std::string token = line.substr(std::min(line.size(), sizeof(kToWorld)));
+  if (!token.empty() && !same(token, settings_.token)) {
+    throw Unwanted("wrong token: take the one that the server has printed");
+  }
+  came_.pop_front();  // the end of the line
+  throw GoesToWorld{!token.empty(), std::string(came_.begin(), came_.end())};
+}
+
 void CardServer::Client::take_hello(const std::string& line) {
+  if (line == kToWorld || line.rfind(std::string(kToWorld) + " ", 0) == 0) go_to_world(line);
   const bool plain = line == kHello;
   const bool with_token = line.rfind(std::string(kHello) + " ", 0) == 0;
   if (!plain && !with_token) throw Unwanted("no hello of this version");

@@ -22,6 +22,12 @@ class Unwanted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A client that wants to look at the machine, not at the card.
+struct GoesToWorld {
+  bool may_press;
+  std::string came;  // behind its hello
+};
+
 // One more may have come and not begun yet; so who moves the card finds a place.
 constexpr std::size_t kMaxReaders = 8;
 
@@ -64,6 +70,7 @@ class CardServer::Client {
   void begin_anew();
   void begin();
   void take_hello(const std::string& line);
+  [[noreturn]] void go_to_world(const std::string& line);
   void take_wait(const std::string& text);
   void drop(std::size_t bytes);
   bool deliver(std::uint8_t byte);

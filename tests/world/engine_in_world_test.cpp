@@ -91,7 +91,8 @@ TEST(EngineInWorld, TheEndOfTheTravelHoldsWhatNoSwitchHasStopped) {
 }
 
 TEST(EngineInWorld, TheEmergencyStopAtItsTime) {
-  WorldCard c("events = [\"at 0.25 s press estop\", \"at 1.5 s release estop\"]\n" + default_world_text());
+  const std::string at_once = changed_world("power_off_after = 500", "power_off_after = 0");
+  WorldCard c("events = [\"at 0.25 s press estop\", \"at 1.5 s release estop\"]\n" + at_once);
   EXPECT_THAT(c.end_of("G1 X100 F3000\n"), HasSubstr("EMERGENCY_STOP"));
   const std::uint64_t pressed = kCardClock / 4;
   ASSERT_FALSE(c.steps.pins.empty());

@@ -77,6 +77,7 @@ bounces = 5
 [button.stop]
 emergency_stop = true
 cuts_power = false
+power_off_after = 30
 bounces = 0
 )";
 
@@ -114,6 +115,7 @@ TEST(WorldFile, EachEntryIsRead) {
   EXPECT_TRUE(d.buttons[0].contact.normally_closed);
   EXPECT_FALSE(d.buttons[1].input);
   EXPECT_FALSE(d.buttons[1].cuts_power);
+  EXPECT_DOUBLE_EQ(d.buttons[1].power_delay, 0.03);
   EXPECT_TRUE(d.buttons[1].contact.normally_closed);
   ASSERT_EQ(d.events.size(), 2U);
   EXPECT_EQ(d.events[0].nanoseconds, 1'500'000'000U);

@@ -134,6 +134,35 @@ TEST(World, WithoutPowerCarriagesStay) {
   EXPECT_EQ(world.carriage(0).place(), 20);
 }
 
+// As behind a safety relay with a delay: until then the motors hold, and pulses move the carriages.
+TEST(World, ThePowerGoesBehindTheDelayOfItsButton) {
+  Description d = two_axes();
+  d.buttons[0].power_delay = 0.1;
+  World world(d, kClock);
+  world.press("estop");
+  EXPECT_TRUE(world.emergency_stop());
+  EXPECT_LE(world.quiet_until(), 100'000U);
+  run_pulses(world, 0, 20, 1000);
+  world.run_to(50'000);
+  world.press("estop");  // it is down already: the delay does not begin anew
+  world.run_to(99'999);
+  EXPECT_TRUE(world.carriage(0).motor().powered());
+  EXPECT_EQ(world.carriage(0).place(), 20);
+  world.run_to(100'000);
+  EXPECT_FALSE(world.carriage(0).motor().powered());
+  run_pulses(world, 0, 20, 1000);
+  world.run_to(world.now() + 500'000);
+  EXPECT_EQ(world.carriage(0).place(), 20);
+  world.release("estop");
+  EXPECT_TRUE(world.carriage(0).motor().powered());
+  world.press("estop");  // anew
+  EXPECT_TRUE(world.carriage(0).motor().powered());
+  world.release("estop");
+  world.run_to(world.now() + 500'000);
+  EXPECT_TRUE(world.carriage(0).motor().powered()) << "released before its delay was over";
+  EXPECT_NE(error_of([](Description& wrong) { wrong.buttons[0].power_delay = -1; }), "none");
+}
+
 TEST(World, ADriveThatWatchesItsMotorRaisesItsAlarm) {
   Description d = two_axes();
   d.axes[0].alarm_at = 1.5;  // full steps: 24 pulses

@@ -29,9 +29,10 @@ void World::pulse(std::uint64_t clock, unsigned card_axis, int direction) {
 void World::run_to(std::uint64_t clock) {
   for (;;) {
     const std::uint64_t event = next_event_ < events_.size() ? events_[next_event_].clock : UINT64_MAX;
-    const std::uint64_t due = std::min({event, step_due_, contact_due_});
+    const std::uint64_t due = std::min({event, step_due_, contact_due_, power_due_});
     if (due > clock) break;
     now_ = std::max(now_, due);
+    if (due == power_due_) switch_power();
     if (due == event) make_events();
     if (due == step_due_) move();
     show_pins();
@@ -41,7 +42,7 @@ void World::run_to(std::uint64_t clock) {
 
 std::uint64_t World::quiet_until() const {
   constexpr double kWatch = 1e-3;  // s: a drive that watches its motor looks so often
-  std::uint64_t until = contact_due_;
+  std::uint64_t until = std::min(contact_due_, power_due_);
   if (next_event_ < events_.size()) until = std::min(until, events_[next_event_].clock);
   if (watches_) until = std::min(until, now_ + static_cast<std::uint64_t>(kWatch * clock_hz_));
   for (const Switch& one : switches_) {
@@ -79,15 +80,26 @@ void World::watch(Axis& axis) {
 }
 
 void World::set(std::size_t button, bool pressed) {
+  time_power(buttons_[button], pressed);
   buttons_[button].contact.set(pressed, now_);
   switch_power();
   show_pins();
 }
 
+// A second press of a button that is down does not begin its delay anew.
+void World::time_power(Button& button, bool pressed) {
+  if (!button.description.cuts_power || pressed == button.contact.pressed()) return;
+  const auto delay = static_cast<std::uint64_t>(button.description.power_delay * clock_hz_);
+  button.cut_at = pressed ? now_ + delay : UINT64_MAX;
+}
+
 void World::switch_power() {
-  const bool cut = std::any_of(buttons_.begin(), buttons_.end(), [](const Button& button) {
-    return button.description.cuts_power && button.contact.pressed();
-  });
+  bool cut = false;
+  power_due_ = UINT64_MAX;
+  for (const Button& button : buttons_) {
+    cut = cut || button.cut_at <= now_;
+    if (button.cut_at > now_) power_due_ = std::min(power_due_, button.cut_at);
+  }
   for (Axis& axis : axes_) {
     axis.carriage.set_power(!cut && (axis.alarm == kNone || !buttons_[axis.alarm].contact.pressed()));
     if (!axis.carriage.still()) step_due_ = std::min(step_due_, next_boundary());

@@ -129,6 +129,7 @@ void read_button(Table& table, Reading& reading) {
   if (!emergency) button.input = read_input(table, "input");
   table.find("input");
   button.cuts_power = table.flag("cuts_power", emergency);
+  button.power_delay = table.number("power_off_after", {0, 60'000, "ms"}, 0) / 1e3;
   button.contact = read_contact(table, emergency);
   table.refuse_other_keys();
   reading.lines.emplace_back("button " + button.name, table.line());

@@ -94,6 +94,7 @@ void World::add_contacts(const Description& description) {
     if (button.input) wire(name, *button.input);
     if (!button.input && has_emergency_stop_) refuse_part(name + ": the emergency stop's pin has another button");
     has_emergency_stop_ = has_emergency_stop_ || !button.input;
+    if (!(button.power_delay >= 0)) refuse_part(name + ": power goes 0 s or more after the press");
     buttons_.push_back({button, named(name, [&] { return Contact(button.contact, clock_hz_, ++seed); })});
   }
 }
@@ -137,6 +138,17 @@ std::vector<std::string> World::pressed() const {
   std::for_each(switches_.begin(), switches_.end(), add);
   std::for_each(buttons_.begin(), buttons_.end(), add);
   return names;
+}
+
+std::vector<World::ContactState> World::contacts() const {
+  std::vector<ContactState> states;
+  for (const Switch& one : switches_) {
+    states.push_back({one.description.name, one.description.input, false, one.contact.pressed()});
+  }
+  for (const Button& button : buttons_) {
+    states.push_back({button.description.name, button.description.input, true, button.contact.pressed()});
+  }
+  return states;
 }
 
 }  // namespace trammel::world

@@ -13,6 +13,8 @@
 #include "trammel/frames/endpoint.hpp"
 #include "trammel/sim/engine.hpp"
 #include "trammel/transport/byte_stream.hpp"
+#include "trammel/world/state.hpp"
+#include "trammel/world/world.hpp"
 
 namespace trammel::serve {
 
@@ -29,6 +31,11 @@ struct Settings {
   std::chrono::milliseconds hello{};    // a client that has said nothing sensible for so long is let go; 0: never
   std::chrono::milliseconds silence{};  // and one that has fallen silent
   std::function<void(const std::string&)> note = [](const std::string&) {};  // what the operator should know
+  // The machine behind the engine's pins, where it has one: clients read it and press its buttons. It outlives the
+  // server, and nobody else uses it while turn() runs.
+  world::World* world = nullptr;
+  // What these clients see as the path; true: count anew, from here.
+  std::function<world::PathCount(bool anew)> path;
 };
 
 class CardServer {
@@ -56,6 +63,7 @@ class CardServer {
  private:
   class Client;
   class Pace;
+  class WorldClients;
   struct Leaving;
 
   void admit();
@@ -63,7 +71,10 @@ class CardServer {
   frames::Endpoint::Answer make_reading(bool write, std::uint32_t address, std::uint32_t data);
   void serve_clients();
   void serve_client(Client& client, std::chrono::nanoseconds longest);
+  void forget(Client& client);
   void lose_client(Client& client, const std::string& why);
+  void send_to_world(Client& client, bool may_press, std::string came);
+  world::PathCount path(bool anew) const { return settings_.path ? settings_.path(anew) : world::PathCount{}; }
   Client* mover() const;  // the one that may move the card; nullptr where there is none
   std::size_t readers() const;
   std::optional<std::uint64_t> clocks_to_next() const;
@@ -79,6 +90,7 @@ class CardServer {
   Counts counts_;
   std::vector<std::unique_ptr<Client>> clients_;  // the oldest first
   std::unique_ptr<Pace> pace_;
+  std::unique_ptr<WorldClients> at_world_;
   frames::Endpoint motion_;          // the mover's: a connection that is made anew finds its session again
   frames::Session reading_session_;  // of the reader that went last, for the next one, which may be the same
   std::vector<Leaving> leaving_;

@@ -41,6 +41,7 @@ struct ButtonDescription {
   std::optional<unsigned> input;  // of the card, below kMostInputs; none: the emergency stop's pin
   bool cuts_power = false;        // of all motors, while it is pressed
   ContactParameters contact;
+  double power_delay = 0;  // s, >= 0: the power goes so long after the press, as behind a relay with a delay
 };
 
 struct Event {

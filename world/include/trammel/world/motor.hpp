@@ -40,6 +40,7 @@ class Motor {
   void advance(double seconds);
   // Without power there is no torque. With it again the rotor falls into the next place where the field holds it.
   void set_power(bool on);
+  bool powered() const { return powered_; }
   // Something stops the rotor there: it stands.
   void hit(double pulses);
 

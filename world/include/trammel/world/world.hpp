@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,15 @@ class World {
   void release(const std::string& button) { set(button, false); }
   bool pressed(const std::string& button_or_switch) const;  // throws likewise
   std::vector<std::string> pressed() const;                 // names of the switches and buttons that are
+  void require_button(const std::string& name) const { find_button(name); }  // throws as press() does
+
+  struct ContactState {
+    std::string name;
+    std::optional<unsigned> input;  // none: the emergency stop's pin
+    bool is_button = false;         // else a switch, which a carriage presses
+    bool pressed = false;
+  };
+  std::vector<ContactState> contacts() const;  // switches, then buttons, as the description has them
 
   // By index of the description's axes.
   std::size_t axes() const { return axes_.size(); }
@@ -63,6 +73,7 @@ class World {
   struct Button {
     ButtonDescription description;
     Contact contact;
+    std::uint64_t cut_at = UINT64_MAX;  // clock at which it takes the power; none while it is released
   };
   struct Due {
     std::uint64_t clock;
@@ -81,6 +92,7 @@ class World {
   void make_events();
   void move();
   void watch(Axis& axis);
+  void time_power(Button& button, bool pressed);
   void switch_power();
   void show_pins();
   std::uint64_t next_boundary() const { return (now_ / step_clocks_ + 1) * step_clocks_; }
@@ -98,6 +110,7 @@ class World {
   std::uint64_t now_ = 0;
   std::uint64_t step_due_ = UINT64_MAX;     // clock of the next integration; none while all stand still
   std::uint64_t contact_due_ = UINT64_MAX;  // clock of the next bounce
+  std::uint64_t power_due_ = UINT64_MAX;    // clock at which a button takes the power
   bool watches_ = false;                    // a drive watches its motor
   std::uint32_t wired_ = 0;
   std::uint32_t levels_ = 0;
