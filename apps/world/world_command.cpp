@@ -70,10 +70,18 @@ std::string state_text(const nlohmann::json& state) {
                             state["time_s"].get<double>());
 }
 
+transport::ServedWorld connect(const transport::CardUrl& url) {
+  try {
+    return transport::ServedWorld(url);
+  } catch (const driver::LinkError& error) {
+    throw UsageError(fmt::format("--card: {}", error.what()));
+  }
+}
+
 void ask_world(const WorldOptions& options) {
   const transport::CardUrl url = server_of(options);
   try {
-    transport::ServedWorld world(url);
+    transport::ServedWorld world = connect(url);
     const auto longest = std::chrono::milliseconds(std::llround(options.longest * 1000));
     const std::string answer = world.request(request_of(options), longest);
     to_standard_output(options.json ? answer + "\n" : state_text(nlohmann::json::parse(answer)));

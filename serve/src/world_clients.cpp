@@ -63,8 +63,8 @@ void CardServer::WorldClients::read(Client& client) {
   while (const std::size_t count = client.stream->read(bytes, sizeof(bytes), 0ns)) {
     client.came.append(reinterpret_cast<const char*>(bytes), count);
     client.heard = Clock::now();
-    if (client.came.size() > kLongestRequest) throw Unwanted("a request is one line, and waits for its answer");
   }
+  if (client.came.size() > kLongestRequest) throw Unwanted("a request is one line, and waits for its answer");
   const auto most = server_.settings_.silence;
   const bool waits = client.request || client.due;
   if (most.count() != 0 && !waits && Clock::now() - client.heard > most) throw Unwanted("it has fallen silent");

@@ -25,6 +25,11 @@ class AtTheMachine : public ::testing::Test {
   nlohmann::json state() const {
     return nlohmann::json::parse(command_.run("world --json --card " + server_.url()).out, nullptr, false);
   }
+  // A program of one line; a jog asks more often how far it is.
+  Outcome move(const std::string& words, const std::string& options = "") const {
+    return command_.run("run " + command_.write("move.ngc", "G91\nG1 " + words + " F6000\n") + " " + options +
+                        " --card " + server_.moving());
+  }
   std::string refused(const std::string& arguments) const {
     const Outcome outcome = command_.run("world " + arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
@@ -37,7 +42,7 @@ class AtTheMachine : public ::testing::Test {
 };
 
 TEST_F(AtTheMachine, TheStateFollowsTheCardAndTheButtons) {
-  ASSERT_EQ(command_.run("jog X-100.5 --card " + server_.moving()).status, 0);
+  ASSERT_EQ(move("X-100.5").status, 0);
   const nlohmann::json now = state();
   EXPECT_EQ(now["axes"][0]["axis"], "X");
   EXPECT_EQ(now["axes"][0]["commanded"], -8040);
@@ -53,21 +58,21 @@ TEST_F(AtTheMachine, TheStateFollowsTheCardAndTheButtons) {
   EXPECT_THAT(command_.run("recover --card " + server_.url()).out, HasSubstr("EMERGENCY_STOP"));
   EXPECT_EQ(world("release estop").status, 0);
   EXPECT_FALSE(state()["emergency_stop"]);
-  EXPECT_EQ(command_.run("jog X1 --clear-faults --card " + server_.moving()).status, 0);
+  EXPECT_EQ(move("X1", "--clear-faults").status, 0);
   EXPECT_THAT(world("count").out, HasSubstr("path      0 steps, identity 0000000000000000\n"));
 }
 
 TEST_F(AtTheMachine, APressInMidMotion) {
   Running press(command_, "world press estop --when 'X>5' --card " + server_.moving(), "press.err", "press.out");
   ASSERT_TRUE(eventually([&] { return server_.said("has come"); }));
-  const Outcome jog = command_.run("jog X20 --card " + server_.moving());
-  EXPECT_EQ(jog.status, 1);
-  EXPECT_THAT(jog.err, HasSubstr("EMERGENCY_STOP"));
+  const Outcome stopped = move("X20");
+  EXPECT_EQ(stopped.status, 1);
+  EXPECT_THAT(stopped.err, HasSubstr("EMERGENCY_STOP"));
   EXPECT_TRUE(press.wait());
   EXPECT_THAT(contents(command_.path("press.out")), HasSubstr("pressed   estop\n"));
   const double at = state()["axes"][0]["commanded_mm"].get<double>();
   EXPECT_GT(at, 5);
-  EXPECT_LT(at, 6);
+  EXPECT_LT(at, 8);  // at 100 mm/s in a turn of the server, 5 ms, and as far again by its accesses
 }
 
 TEST_F(AtTheMachine, WhatIsNotThereIsRefusedByName) {
@@ -91,8 +96,8 @@ TEST_F(AtTheMachine, AWaitEndsAndItsPressIsForgotten) {
   const Outcome waited = world("press estop --when 'X>5' --longest 0.3");
   EXPECT_EQ(waited.status, 1);
   EXPECT_THAT(waited.err, HasSubstr("no answer in 0.3 s"));
-  const Outcome jog = command_.run("jog X10 --card " + server_.moving());
-  EXPECT_EQ(jog.status, 0) << jog.err;
+  const Outcome moved = move("X10");
+  EXPECT_EQ(moved.status, 0) << moved.err;
   EXPECT_TRUE(state()["pressed"].empty());
 }
 

@@ -20,7 +20,7 @@ import tempfile
 import time
 from pathlib import Path
 
-LONGEST = 60  # s, for a command
+LONGEST = 120  # s, for a command
 MARK = "~~~ done"
 NUMBER = re.compile(r"-?\d+\.\d+")
 TICKS = re.compile(r"\d+ ticks")
@@ -123,6 +123,7 @@ class Tour:
 
     def serve(self, command: str) -> list[str]:
         """Starts the server, as in a terminal of its own; what it prints when it is there."""
+        (self.folder / "served").touch()
         self.shell.run(f"{command} --engine model --fast >served 2>notes & SERVER=$!")
         end = time.monotonic() + LONGEST
         while "move with" not in (self.folder / "served").read_text():

@@ -75,7 +75,7 @@ TEST_F(WorldClientsTest, APressIsAnsweredTwentyMillisecondsOfTheCardLater) {
   EXPECT_LE(engine_->cycles() - before, kClock / 50 + 100);
   const std::uint64_t after = engine_->cycles();
   client->request("state");
-  EXPECT_EQ(engine_->cycles(), after) << "a look takes no time";
+  EXPECT_LE(engine_->cycles() - after, 100U) << "a look takes no time but the server's own";
 }
 
 TEST_F(WorldClientsTest, WithoutTheTokenTheyLookAlone) {

@@ -51,10 +51,11 @@ TEST(WorldState, NamesWhatTheMachineIsLike) {
       R"({"axis":"X","carriage_mm":0.0000,"commanded_mm":0.0000,"carriage":0,"commanded":0,"lost":0,"powered":true},)"
       R"({"axis":"Z","carriage_mm":0.0000,"commanded_mm":0.0000,"carriage":0,"commanded":0,"lost":0,"powered":true}],)"
       R"("switches":[{"name":"far","input":2,"pressed":false}],)"
-      R"("buttons":[{"name":"x_alarm","input":8,"pressed":false},{"name":"hold","input":6,"pressed":false},)"
-      R"({"name":"sto\"p","input":"estop","pressed":false}],)"
+      R"("buttons":[{"name":"x_alarm","input":8,"pressed":false},{"name":"sto\"p","input":"estop","pressed":false},)"
+      R"({"name":"hold","input":6,"pressed":false}],)"
       R"("pressed":[],"inputs":320,"emergency_stop":false,"path":{"steps":0,"identity":""}})");
   for (int n = 0; n < 100; ++n) world.pulse(world.now() + 1000, 0, +1);
+  world.run_to(kStateClock);
   world.press("sto\"p");
   world.run_to(1'500'000);
   EXPECT_THAT(
