@@ -54,7 +54,7 @@ std::string axis_text(const nlohmann::json& axis) {
                      axis["powered"].get<bool>() ? "" : "   no power");
 }
 
-std::string names(const nlohmann::json& parts) {
+std::string list_text(const nlohmann::json& parts) {
   std::vector<std::string> out;
   for (const auto& part : parts) out.push_back((part.is_string() ? part : part["name"]).get<std::string>());
   return out.empty() ? "nothing" : fmt::format("{}", fmt::join(out, ", "));
@@ -63,8 +63,8 @@ std::string names(const nlohmann::json& parts) {
 std::string state_text(const nlohmann::json& state) {
   std::string text;
   for (const auto& axis : state["axes"]) text += axis_text(axis);
-  text += fmt::format("pressed   {}\n", names(state["pressed"]));
-  text += fmt::format("switches  {}\nbuttons   {}\n", names(state["switches"]), names(state["buttons"]));
+  text += fmt::format("pressed   {}\n", list_text(state["pressed"]));
+  text += fmt::format("switches  {}\nbuttons   {}\n", list_text(state["switches"]), list_text(state["buttons"]));
   return text + fmt::format("path      {} steps, identity {}\ntime      {:.3f} s of the card\n",
                             state["path"]["steps"].get<std::uint64_t>(), state["path"]["identity"].get<std::string>(),
                             state["time_s"].get<double>());
