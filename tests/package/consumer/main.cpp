@@ -19,11 +19,11 @@ int main() {
   const driver::Snapshot snapshot = card.read_snapshot();
   std::printf("%s: x %d, y %d\n", std::string(card_map::find_register(card_map::reg::kMagic).entry->name).c_str(),
               snapshot.position[0], snapshot.position[1]);
-  // The same line in a machine: its carriage follows.
+  // The same line in a machine, slowly: its carriages follow.
   world::World machine(world::default_world(), 1'000'000);
   world::EngineInWorld in_machine(sim::make_model_engine({}), machine);
   driver::Card moved = driver::Card::open(in_machine);
-  driver::run_line(moved, driver::plan_line(moved.timing(), {20, 40}, std::chrono::milliseconds(1)));
+  driver::run_line(moved, driver::plan_line(moved.timing(), {20, 40}, std::chrono::milliseconds(100)));
   in_machine.wait(1'000'000);
   const bool followed = machine.carriage(0).place() == 20 && machine.carriage(1).place() == 40;
   const model::DeviationAccumulator accumulator;
