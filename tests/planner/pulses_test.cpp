@@ -25,7 +25,7 @@ machine::Machine laser() {
   return machine;
 }
 
-std::vector<driver::PwmCommand> pulses_of(const Planned& block) { return commands<driver::PwmCommand>(block); }
+std::vector<driver::PwmCommand> pwm_of(const Planned& block) { return commands<driver::PwmCommand>(block); }
 
 TEST(Pulses, StandWhereTheyChange) {
   const Plan plan = plan_text("M3 S500\nG0 X5\nG1 X10 F1200\nX20\nX30 S1000\nG0 X0\nM2\n", laser(), card_with(true));
@@ -33,7 +33,7 @@ TEST(Pulses, StandWhereTheyChange) {
   ASSERT_EQ(plan.blocks.size(), 6U);
   const int duties[] = {0, 32768, -1, 65535, 0, -1};
   for (std::size_t i = 0; i < std::size(duties); ++i) {
-    const auto pulses = pulses_of(plan.blocks[i]);
+    const auto pulses = pwm_of(plan.blocks[i]);
     EXPECT_EQ(plan.blocks[i].planned.commands, plan.blocks[i].commands.size()) << i;
     ASSERT_EQ(pulses.size(), duties[i] < 0 ? 0U : 1U) << i;
     if (pulses.empty()) continue;
@@ -49,7 +49,7 @@ TEST(Pulses, TheScaleIsThatOfThePathsTicks) {
   std::size_t followed = 0;
   driver::PwmCommand in_force;
   for (const Planned& block : plan.blocks) {
-    for (const driver::PwmCommand& pulses : pulses_of(block)) in_force = pulses;
+    for (const driver::PwmCommand& pulses : pwm_of(block)) in_force = pulses;
     if (!moves(block.planned.block)) continue;
     ++followed;
     ASSERT_TRUE(in_force.follows);
@@ -67,7 +67,7 @@ TEST(Pulses, TheScaleIsThatOfThePathsTicks) {
 TEST(Pulses, ACardWithoutPwmGetsNone) {
   const Plan plan = plan_text("M4 S500\nG1 X10 F1200\nM2\n", laser(), card_with(false));
   ASSERT_FALSE(plan.error);
-  for (const Planned& block : plan.blocks) EXPECT_TRUE(pulses_of(block).empty());
+  for (const Planned& block : plan.blocks) EXPECT_TRUE(pwm_of(block).empty());
 }
 
 }  // namespace
