@@ -9,7 +9,7 @@
 namespace trammel::gcode {
 namespace {
 
-machine::Machine machine_with(const char* more) {
+machine::Machine machine_with_spindle(const char* more) {
   machine::Machine machine = machine::default_machine();
   machine::apply_override(machine, "spindle.output=1");
   machine::apply_override(machine, "spindle.max_s=1000");
@@ -31,20 +31,20 @@ std::vector<std::string> powers_of(const machine::Machine& machine, const std::s
 using Powers = std::vector<std::string>;
 
 TEST(Spindle, TurnsInAllMotionsUntilItIsOff) {
-  const machine::Machine machine = machine_with("");
+  const machine::Machine machine = machine_with_spindle("");
   EXPECT_EQ(powers_of(machine, "S500\nG1 X1 F60\nM3\nX2\nG0 X3 S250\nG4 P1\nM4 X4\nM5 X5\nM3 S2000 X6\nM2\n"),
             (Powers{"0", "50", "25", "d25", "25", "0", "100", "0"}));
 }
 
 TEST(Spindle, CuttingWaitsForANewSpeed) {
-  const machine::Machine machine = machine_with("spindle.spin_up_s=2.5");
+  const machine::Machine machine = machine_with_spindle("spindle.spin_up_s=2.5");
   EXPECT_EQ(powers_of(machine, "M3 S500\nG1 X1 F60\nX2 S500\nX3 S600\nM5\nX4 S700\nM2\n"),
             (Powers{"d50", "50", "50", "d60", "60", "0", "0"}));
 }
 
 // As Grbl 1.1 in its laser mode.
 TEST(Laser, IsDarkInTraversesAndFollowsWithM4) {
-  const machine::Machine machine = machine_with("spindle.laser=true");
+  const machine::Machine machine = machine_with_spindle("spindle.laser=true");
   EXPECT_EQ(powers_of(machine, "M3 S1000\nG0 X1\nG1 X2 F60\nG4 P1\nG2 X4 I1\nG0 X5\nG4 P1\nG1 S0 X6\nS500 X7\nM2\n"),
             (Powers{"0", "100", "d100", "100", "0", "d0", "0", "50", "0"}));
   EXPECT_EQ(powers_of(machine, "M4 S1000\nG0 X1\nG1 X2 F60\nX3 S10\nM3 X4\nM5 X5\nM2\n"),
@@ -52,7 +52,7 @@ TEST(Laser, IsDarkInTraversesAndFollowsWithM4) {
 }
 
 TEST(Spindle, ItsOutputIsSwitchedByM3AndM4) {
-  const machine::Machine machine = machine_with("outputs.m4=2");
+  const machine::Machine machine = machine_with_spindle("outputs.m4=2");
   std::vector<std::pair<unsigned, unsigned>> switched;
   for (const Motion& motion : read_text("M3\nM4\nM5\nM2\n", machine).motions) {
     if (motion.kind == MotionKind::kOutput) switched.emplace_back(motion.set, motion.clear);

@@ -8,7 +8,7 @@
 namespace trammel::machine {
 namespace {
 
-std::string refusal(const std::string& one, const std::string& two = "") {
+std::string spindle_refusal(const std::string& one, const std::string& two = "") {
   Machine machine = default_machine();
   try {
     apply_override(machine, one);
@@ -44,11 +44,11 @@ TEST(Spindle, ALaserIsOffAtTheCauseOfAStop) {
 }
 
 TEST(Spindle, WhatIsWrongIsSaid) {
-  EXPECT_NE(refusal("spindle.output=16").find("spindle.output"), std::string::npos);
-  EXPECT_NE(refusal("spindle.pwm_hz=10").find("spindle.output is missing"), std::string::npos);
-  EXPECT_NE(refusal("spindle.output=1", "spindle.pwm_hz=2e6").find("spindle.pwm_hz"), std::string::npos);
-  EXPECT_NE(refusal("spindle.output=1", "spindle.speed=2").find("spindle.speed"), std::string::npos);
-  EXPECT_NE(refusal("spindle.output=1", "outputs.m8=1").find("coolant"), std::string::npos);
+  EXPECT_NE(spindle_refusal("spindle.output=16").find("spindle.output"), std::string::npos);
+  EXPECT_NE(spindle_refusal("spindle.pwm_hz=10").find("spindle.output is missing"), std::string::npos);
+  EXPECT_NE(spindle_refusal("spindle.output=1", "spindle.pwm_hz=2e6").find("spindle.pwm_hz"), std::string::npos);
+  EXPECT_NE(spindle_refusal("spindle.output=1", "spindle.speed=2").find("spindle.speed"), std::string::npos);
+  EXPECT_NE(spindle_refusal("spindle.output=1", "outputs.m8=1").find("coolant"), std::string::npos);
 }
 
 }  // namespace

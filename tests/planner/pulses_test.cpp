@@ -8,32 +8,33 @@
 namespace trammel::planner {
 namespace {
 
-constexpr std::uint32_t kClock = 1'000'000;
+constexpr std::uint32_t kPulseClock = 1'000'000;
 
-CardLimits card_with(bool pwm) {
+CardLimits card_for_pulses(bool pwm) {
   CardLimits card;
-  card.clock_hz = kClock;
+  card.clock_hz = kPulseClock;
   card.outputs = 4;
   card.pwm = pwm;
   return card;
 }
 
-machine::Machine laser() {
+machine::Machine laser_machine() {
   machine::Machine machine = machine::default_machine();
   machine::apply_override(machine, "spindle.output=1");
   machine::apply_override(machine, "spindle.laser=true");
   return machine;
 }
 
-std::vector<driver::PwmCommand> pulses_of(const Planned& block) { return commands<driver::PwmCommand>(block); }
+std::vector<driver::PwmCommand> pwm_commands_of(const Planned& block) { return commands<driver::PwmCommand>(block); }
 
 TEST(Pulses, StandWhereTheyChange) {
-  const Plan plan = plan_text("M3 S500\nG0 X5\nG1 X10 F1200\nX20\nX30 S1000\nG0 X0\nM2\n", laser(), card_with(true));
+  const Plan plan =
+      plan_text("M3 S500\nG0 X5\nG1 X10 F1200\nX20\nX30 S1000\nG0 X0\nM2\n", laser_machine(), card_for_pulses(true));
   ASSERT_FALSE(plan.error);
   ASSERT_EQ(plan.blocks.size(), 6U);
   const int duties[] = {0, 32768, -1, 65535, 0, -1};
   for (std::size_t i = 0; i < std::size(duties); ++i) {
-    const auto pulses = pulses_of(plan.blocks[i]);
+    const auto pulses = pwm_commands_of(plan.blocks[i]);
     EXPECT_EQ(plan.blocks[i].planned.commands, plan.blocks[i].commands.size()) << i;
     ASSERT_EQ(pulses.size(), duties[i] < 0 ? 0U : 1U) << i;
     if (pulses.empty()) continue;
@@ -44,19 +45,20 @@ TEST(Pulses, StandWhereTheyChange) {
 
 // The gain that the card multiplies the rate with gives the programmed duty at the programmed feed.
 TEST(Pulses, TheScaleIsThatOfThePathsTicks) {
-  const Plan plan = plan_text("M4 S500\nG1 X10 F1200\nY10 F600\nG1 X0 Y0 Z5\nM2\n", laser(), card_with(true));
+  const Plan plan =
+      plan_text("M4 S500\nG1 X10 F1200\nY10 F600\nG1 X0 Y0 Z5\nM2\n", laser_machine(), card_for_pulses(true));
   ASSERT_FALSE(plan.error);
   std::size_t followed = 0;
   driver::PwmCommand in_force;
   for (const Planned& block : plan.blocks) {
-    for (const driver::PwmCommand& pulses : pulses_of(block)) in_force = pulses;
+    for (const driver::PwmCommand& pulses : pwm_commands_of(block)) in_force = pulses;
     if (!moves(block.planned.block)) continue;
     ++followed;
     ASSERT_TRUE(in_force.follows);
     const auto lines = commands<driver::LineCommand>(block);
     ASSERT_EQ(lines.size(), 1U);
     const Block& b = block.planned.block;
-    const double rate = b.wanted * static_cast<double>(lines[0].ticks) / b.length / kClock;  // ticks per clock
+    const double rate = b.wanted * static_cast<double>(lines[0].ticks) / b.length / kPulseClock;  // ticks per clock
     const double duty = std::floor(rate * 0x1p31 * std::ldexp(1.0, in_force.shift)) * in_force.gain / 0x1p30;
     EXPECT_NEAR(duty, 32768, 32768 * 2e-3) << followed;
     EXPECT_EQ(in_force.duty, 32768);
@@ -65,9 +67,9 @@ TEST(Pulses, TheScaleIsThatOfThePathsTicks) {
 }
 
 TEST(Pulses, ACardWithoutPwmGetsNone) {
-  const Plan plan = plan_text("M4 S500\nG1 X10 F1200\nM2\n", laser(), card_with(false));
+  const Plan plan = plan_text("M4 S500\nG1 X10 F1200\nM2\n", laser_machine(), card_for_pulses(false));
   ASSERT_FALSE(plan.error);
-  for (const Planned& block : plan.blocks) EXPECT_TRUE(pulses_of(block).empty());
+  for (const Planned& block : plan.blocks) EXPECT_TRUE(pwm_commands_of(block).empty());
 }
 
 }  // namespace

@@ -16,11 +16,11 @@
 namespace trammel::run {
 namespace {
 
-constexpr std::uint32_t kClock = 100'000'000;
-constexpr double kStepsPerMm = 80;  // of X and Y
-constexpr double kFeed = 25;        // mm/s
-constexpr double kPower = 0.6;      // of S at most
-constexpr unsigned kOutput = 1;
+constexpr std::uint32_t kLaserClock = 100'000'000;
+constexpr double kLaserStepsPerMm = 80;  // of X and Y
+constexpr double kLaserFeed = 25;        // mm/s
+constexpr double kLaserPower = 0.6;      // of S at most
+constexpr unsigned kLaserOutput = 1;
 
 // Lit clocks between the steps that begin each mm of the path. Lines along X or Y alone: each step is 1/80 mm of path.
 class EnergyMeter final : public driver::StepSink {
@@ -28,7 +28,7 @@ class EnergyMeter final : public driver::StepSink {
   void pin_step(const driver::PinStep& step) override {
     if (step.axis > 1) return;
     account(step.cycle);
-    if (steps_ % static_cast<unsigned>(kStepsPerMm) == 0 && steps_ != 0) {
+    if (steps_ % static_cast<unsigned>(kLaserStepsPerMm) == 0 && steps_ != 0) {
       lit_.push_back(in_mm_);
       in_mm_ = 0;
     }
@@ -38,8 +38,8 @@ class EnergyMeter final : public driver::StepSink {
   void path_step(const driver::PathStep& /*step*/) override {}
   void outputs_changed(const driver::OutputChange& change) override {
     account(change.cycle);
-    on_ = (change.levels >> kOutput & 1U) != 0;
-    edges_ += (change.changed >> kOutput & 1U) != 0 ? 1 : 0;
+    on_ = (change.levels >> kLaserOutput & 1U) != 0;
+    edges_ += (change.changed >> kLaserOutput & 1U) != 0 ? 1 : 0;
   }
   const std::vector<double>& lit() const { return lit_; }
   std::uint64_t edges() const { return edges_; }
@@ -64,7 +64,7 @@ class EnergyMeter final : public driver::StepSink {
 };
 
 // Right angles, a reversal, lines of less than a millimetre, and a line of another feed.
-std::string program(const char* spindle) {
+std::string laser_program(const char* spindle) {
   std::string text = std::string("G0 X0 Y0\n") + spindle + " S600\nG1 X12 F1500\nG1 Y8\nX4\nY3\nX10\nX6\nY5\n";
   for (int i = 0; i < 12; ++i) text += (i % 2 == 0 ? "G91 X0.5\n" : "G91 Y0.25\n");
   return text + "G90 G1 X30\nG1 Y20\nM5\nM2\n";
@@ -84,14 +84,14 @@ Burnt burn(const char* spindle, bool disturbed) {
   machine::apply_override(machine, "spindle.output=1");
   machine::apply_override(machine, "spindle.pwm_hz=10000");
   machine::apply_override(machine, "spindle.laser=true");
-  const auto engine = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
-  sim::TimedBus bus(*engine, kClock, 1e9);
+  const auto engine = sim::make_model_engine(sim::EngineOptions{4, kLaserClock, false});
+  sim::TimedBus bus(*engine, kLaserClock, 1e9);
   driver::Card card = driver::Card::open(bus);
   configure(card, machine);
   EnergyMeter meter;
   engine->set_sink(&meter);
   const auto at = [&](double seconds, std::uint32_t address, std::uint32_t data) {
-    bus.at(static_cast<std::uint64_t>(seconds * kClock), [=](sim::Engine& e) { e.write(address, data); });
+    bus.at(static_cast<std::uint64_t>(seconds * kLaserClock), [=](sim::Engine& e) { e.write(address, data); });
   };
   namespace reg = card_map::reg;
   if (disturbed) {
@@ -103,7 +103,7 @@ Burnt burn(const char* spindle, bool disturbed) {
     at(2.1, reg::kHold, 1);
     at(2.2, reg::kHold, 0);
   }
-  const std::string text = program(spindle);
+  const std::string text = laser_program(spindle);
   const auto lines = [&text]() -> std::unique_ptr<gcode::LineSource> {
     return std::make_unique<gcode::TextLines>(text, "laser.ngc");
   };
@@ -111,7 +111,7 @@ Burnt burn(const char* spindle, bool disturbed) {
   runner.plan();
   runner.run(card);
   Burnt burnt;
-  const double programmed = kPower * kClock / kFeed;  // lit clocks of 1 mm
+  const double programmed = kLaserPower * kLaserClock / kLaserFeed;  // lit clocks of 1 mm
   for (const double lit : meter.lit()) {
     burnt.least = std::min(burnt.least, lit / programmed);
     burnt.most = std::max(burnt.most, lit / programmed);
@@ -122,7 +122,7 @@ Burnt burn(const char* spindle, bool disturbed) {
   return burnt;
 }
 
-void print(const char* what, const Burnt& b) {
+void print_burnt(const char* what, const Burnt& b) {
   std::printf("%-34s %3zu mm: %.4f to %.4f of the programmed energy in each\n", what, b.mm, b.least, b.most);
 }
 
@@ -130,9 +130,9 @@ TEST(LaserEnergy, IsThatOfTheProgramInEachMillimetre) {
   const Burnt calm = burn("M4", false);
   const Burnt disturbed = burn("M4", true);
   const Burnt constant = burn("M3", true);
-  print("M4", calm);
-  print("M4, holds and overrides", disturbed);
-  print("M3, holds and overrides", constant);
+  print_burnt("M4", calm);
+  print_burnt("M4, holds and overrides", disturbed);
+  print_burnt("M3, holds and overrides", constant);
   EXPECT_GT(calm.mm, 70U);
   EXPECT_GT(calm.edges, 40'000U);
   for (const Burnt& b : {calm, disturbed}) {
