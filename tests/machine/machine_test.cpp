@@ -213,7 +213,7 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"}) {
     EXPECT_EQ(
         error_of("a = " + quote + brackets + quote),
-        "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs, homing")
+        "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, inputs, homing")
         << quote;
     // A string of one line that is not closed hides nothing behind it.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
@@ -221,10 +221,10 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   }
   EXPECT_EQ(
       error_of("a = \"\\\"\" # " + brackets),
-      "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs, homing");
+      "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, inputs, homing");
   EXPECT_EQ(
       error_of("a = '\\' # " + brackets),
-      "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs, homing");
+      "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, inputs, homing");
 }
 
 TEST(Machine, RefusesEndlessText) {
@@ -317,7 +317,7 @@ TEST(Machine, RefusesBadOverrides) {
             "--set axis.x.min=1\\naxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
   EXPECT_EQ(override_error("axis.x=1"), "--set axis.x=1: axis.x must be a table");
   EXPECT_EQ(override_error("speed=1"),
-            "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, tools, probe, "
+            "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, "
             "inputs, homing");
   EXPECT_THAT(override_error("axis.x.steps_per_mm"), StartsWith("--set axis.x.steps_per_mm: "));
   EXPECT_THAT(override_error(""), HasSubstr("not an assignment"));
