@@ -211,20 +211,20 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   const std::string brackets = repeated("[{", 50);
   EXPECT_EQ(parse_machine("# " + brackets + "\n" + defaults(), "m.toml").axes.size(), 4U);
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"}) {
-    EXPECT_EQ(
-        error_of("a = " + quote + brackets + quote),
-        "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs, homing")
+    EXPECT_EQ(error_of("a = " + quote + brackets + quote),
+              "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, "
+              "inputs, homing")
         << quote;
     // A string of one line that is not closed hides nothing behind it.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
     EXPECT_EQ(found, quote.size() == 1) << quote;
   }
-  EXPECT_EQ(
-      error_of("a = \"\\\"\" # " + brackets),
-      "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs, homing");
-  EXPECT_EQ(
-      error_of("a = '\\' # " + brackets),
-      "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs, homing");
+  EXPECT_EQ(error_of("a = \"\\\"\" # " + brackets),
+            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, "
+            "inputs, homing");
+  EXPECT_EQ(error_of("a = '\\' # " + brackets),
+            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, "
+            "inputs, homing");
 }
 
 TEST(Machine, RefusesEndlessText) {
@@ -316,9 +316,10 @@ TEST(Machine, RefusesBadOverrides) {
   EXPECT_EQ(override_error("axis.x.min=1\naxis.x.max=1"),
             "--set axis.x.min=1\\naxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
   EXPECT_EQ(override_error("axis.x=1"), "--set axis.x=1: axis.x must be a table");
-  EXPECT_EQ(override_error("speed=1"),
-            "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, tools, probe, "
-            "inputs, homing");
+  EXPECT_EQ(
+      override_error("speed=1"),
+      "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, "
+      "inputs, homing");
   EXPECT_THAT(override_error("axis.x.steps_per_mm"), StartsWith("--set axis.x.steps_per_mm: "));
   EXPECT_THAT(override_error(""), HasSubstr("not an assignment"));
   EXPECT_THAT(override_error("axis.x.steps_per_mm=eighty"), HasSubstr("not TOML"));
