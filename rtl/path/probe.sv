@@ -104,9 +104,9 @@ module probe #(
     logic before_q;  // a clock before
     logic quiet;  // again: not as the filter passes, before which the input has stood
 
-    assign quiet = quiet_i[condition_q[4:0]] && !before_q;
+    assign quiet   = quiet_i[condition_q[4:0]] && !before_q;
     assign touched = raw_i[condition_q[4:0]] == condition_q[5];
-    assign touch = armed_q && touched && (!touched_q || quiet) && !stopping_i && !cut_i;
+    assign touch   = armed_q && touched && (!touched_q || quiet) && !stopping_i && !cut_i;
 
     always_ff @(posedge clk_i) begin
       before_q  <= armed_q && touched && !rst_i;

@@ -162,7 +162,7 @@ module drive_enable #(
     end
   end
 
-  assign waiting_o = wait_o && moves_i;
+  assign waiting_o  = wait_o && moves_i;
   assign disabled_o = state_q != OFF && state_d == OFF ? axes_q : '0;
 
   logic unused;  // absent axes and faults
