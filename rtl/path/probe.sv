@@ -95,7 +95,8 @@ module probe #(
     end
   end
 
-  assign snapshot_o = touch || late_q;
+  // A cut has its own snapshot under way (REST), into which this one would break.
+  assign snapshot_o = touch || (late_q && !cut_i);
 
   always_ff @(posedge clk_i) late_q <= trips && !touched_q && !touch && !cut_i && !rst_i;
 

@@ -85,8 +85,8 @@ class Probe {
     const bool free = state_.mode == Mode::Off || state_.mode == Mode::Armed;
     return in.waits && state_.waited + 1 >= kSettle && free && !in.stopping && !in.cut;
   }
-  // A snapshot is wanted.
-  bool asks(const Inputs& in) const { return touches(in) || state_.late; }
+  // A snapshot is wanted. Not in the clock of a cut, which has its own under way.
+  bool asks(const Inputs& in) const { return touches(in) || (state_.late && !in.cut); }
   // The probe trips.
   bool trips(const Inputs& in) const { return edges(in) || (takes(in) && met(in.levels)); }
   // PROBE_END must wait.
