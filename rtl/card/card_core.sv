@@ -108,6 +108,7 @@ module card_core #(
   logic [input_roles_pkg::WIDTH-1:0] roles;
   logic [capture_pkg::WIDTH-1:0] capture;
   logic [capture_answer_pkg::WIDTH-1:0] capture_answer;
+  logic filling;
   logic emergency;
   logic emergency_latched;
   // between stream and what moves
@@ -156,6 +157,7 @@ module card_core #(
       .abort_o(abort),
       .probe_clear_o(probe_clear),
       .flush_o(flush),
+      .filling_o(filling),
       .stream_write_o(stream_write),
       .stream_answer_i(stream_answer),
       .start_o(start),
@@ -211,6 +213,7 @@ module card_core #(
       .emergency_stop_i,
       .emergency_stop_level_i,
       .clear_fault_i(clear_fault),
+      .filling_i(filling),
       .latched_o(emergency_latched),
       .emergency_o(emergency)
   );

@@ -21,6 +21,7 @@ module inputs_part #(
     input wire logic emergency_stop_i,
     input wire logic emergency_stop_level_i,  // strap: the level that means stop
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
+    input wire logic filling_i,  // after a reset the registers are not ready for a snapshot
     output logic latched_o,  // its latch: asynchronous
     output logic emergency_o  // level: the cause
 );
@@ -57,6 +58,11 @@ module inputs_part #(
   end
 
   if (Engines[card_map_pkg::ENGINE_EMERGENCY_STOP]) begin : gen_emergency_stop
+    logic stop;
+
+    // Nothing can move before the registers are ready, and the latch holds drives and outputs meanwhile.
+    assign emergency_o = stop && !filling_i;
+
     emergency_stop pin (
         .clk_i,
         .rst_i,
@@ -64,7 +70,7 @@ module inputs_part #(
         .level_i(emergency_stop_level_i),
         .clear_i(clear_fault_i[card_map_pkg::BIT_FAULT_EMERGENCY_STOP]),
         .latched_o,
-        .stop_o (emergency_o)
+        .stop_o (stop)
     );
 
     logic unused;  // the other causes are stop_control's
@@ -74,7 +80,7 @@ module inputs_part #(
     assign latched_o   = 1'b0;
 
     logic unused;
-    assign unused = &{1'b0, emergency_stop_i, emergency_stop_level_i, clear_fault_i};
+    assign unused = &{1'b0, emergency_stop_i, emergency_stop_level_i, clear_fault_i, filling_i};
   end
 endmodule
 `default_nettype wire

@@ -39,6 +39,7 @@ module register_file #(
     output logic abort_o,
     output logic probe_clear_o,
     output logic flush_o,  // combinational
+    output logic filling_o,  // after a reset: no snapshot may be asked for yet
     // the stream of commands
     output logic stream_write_o,
     input wire logic [stream_answer_pkg::WIDTH-1:0] stream_answer_i,
@@ -259,6 +260,7 @@ module register_file #(
       .store_i(store),
       .clocks_i(clocks),
       .place_i(place),
+      .filling_o,
       .writing_o(writing),
       .data_o(ram_data)
   );

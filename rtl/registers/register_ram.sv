@@ -3,7 +3,8 @@
 // Constants and descriptors are its initial content, which nothing overwrites. After reset the other words are written
 // with their reset values in 256 clocks, with machine inputs in 354, or 482 with more than 4 axes, which enables take there,
 // too, with captures in 450 or 614, in the order in which the low bits of the time counter run; writing_o tells whether a
-// word may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
+// word may still be on its way. Settings and words of a snapshot never come together, nor before that is over: accesses
+// wait for it, and so does the one cause of a stop that can come so early, the emergency stop (inputs_part).
 // data_o is the word at place_i two clocks earlier.
 `default_nettype none
 module register_ram #(
@@ -21,6 +22,7 @@ module register_ram #(
     input wire logic [setting_bus_pkg::WIDTH-1:0] store_i,  // a word of a snapshot
     input wire logic [9:0] clocks_i,  // since reset, the low bits
     input wire logic [9:0] place_i,  // as register_fold_pkg has it
+    output logic filling_o,  // the words are written with their reset values: nothing else may be
     output logic writing_o,
     output logic [31:0] data_o
 );
@@ -124,6 +126,7 @@ module register_ram #(
 
   // Of a snapshot its writer tells. An access after a reset asks two clocks later at the earliest.
   assign writing_o = store_q;
+  assign filling_o = resetting_q;
 
   logic unused;  // of a smaller RAM
   assign unused = &{1'b0, store_place_q, place_i};

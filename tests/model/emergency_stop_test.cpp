@@ -92,6 +92,20 @@ TEST(EmergencyStop, ItIsNotClearedWhilePressedAndClearingMovesNothing) {
   EXPECT_EQ(card.outputs(), kBoth) << "but by a command";
 }
 
+// The registers are filled first: no snapshot is lost in that, and nothing can begin meanwhile.
+TEST(EmergencyStop, PressedAtPowerUpItIsACauseWhenAccessesAreAnswered) {
+  CoreBench bench(with_emergency_stop());
+  bench.emergency_stop = true;
+  bench.idle(250);
+  EXPECT_EQ(bench.core.outputs().fault, 0U);
+  bench.idle(300);
+  EXPECT_EQ(bench.core.outputs().fault, field::kFaultEmergencyStop);
+  EXPECT_EQ(bench.read(reg::kStopFault), field::kFaultEmergencyStop);
+  EXPECT_EQ(bench.read(reg::kRestFault), field::kFaultEmergencyStop);
+  EXPECT_GT(bench.read(reg::time_lo(card_map::Area::Stop)), 250U);
+  EXPECT_EQ(bench.read(reg::kHoldLimit), card_map::find_register(reg::kHoldLimit).entry->reset);
+}
+
 // Either a clear comes after a press, or the press is a new stop: none is lost.
 TEST(EmergencyStop, APressBesideAClearCountsAtEveryClock) {
   for (unsigned at = 0; at < 12; ++at) {

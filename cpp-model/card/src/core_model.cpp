@@ -130,7 +130,8 @@ MotionCore::Inputs CoreModel::motion_inputs() const {
   in.raw = state_.inputs.raw();
   in.quiet = state_.inputs.quiet();
   in.roles = state_.inputs.roles();
-  in.emergency = state_.emergency_stop.stops((set.clear_fault & card_map::field::kFaultEmergencyStop) != 0);
+  const bool cleared = (set.clear_fault & card_map::field::kFaultEmergencyStop) != 0;
+  in.emergency = state_.emergency_stop.stops(cleared) && !state_.registers.filling();
   return in;
 }
 

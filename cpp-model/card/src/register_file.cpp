@@ -76,6 +76,9 @@ RegisterFile::RegisterFile(const Config& config) : config_(config) {
 
 void RegisterFile::reset() { *this = RegisterFile(config_); }
 
+// The last word is on its way for a clock more.
+bool RegisterFile::filling() const { return state_.time + 1 < fill_clocks(config_.engines, config_.axes); }
+
 void RegisterFile::clock(const Inputs& in) {
   const bool irq = interrupt(in);
   const bool asked = state_.snapshot_asked;

@@ -36,9 +36,7 @@ std::vector<TrafficRun> runs() {
   for (unsigned axes = 1; axes <= 8; ++axes) {
     const unsigned count = axes == 4 ? 6 : 1;
     const std::uint64_t clocks = axes == 2 ? 12'900'000 : axes % 4 == 0 ? 11'600'000 : 1'300'000;
-    // Seed 70 finds a mismatch that is not understood yet: docs/developer/begun-work.md.
-    const unsigned first = axes == 7 ? 1 : 0;
-    for (unsigned i = 0; i < count; ++i) result.push_back({axes, first + i, clocks});
+    for (unsigned i = 0; i < count; ++i) result.push_back({axes, i, clocks});
   }
   return result;
 }
@@ -59,9 +57,11 @@ void expect_all_happened(const Traffic& traffic, std::uint64_t clocks) {
   EXPECT_GT(traffic.button_holds, clocks / 200'000);
   EXPECT_GT(traffic.captured, clocks / 200'000);
   EXPECT_GT(traffic.queued, clocks / 200'000);
-  if (clocks >= 5'000'000) EXPECT_GT(traffic.lost, clocks / 5'000'000);
+  EXPECT_GT(traffic.lost, clocks / 2'000'000);
   // One in some millions of clocks: too few for a short run.
-  if (clocks >= 5'000'000) EXPECT_GT(traffic.causes_of(field::kFaultEmergencyStop), clocks / 5'000'000);
+  if (clocks >= 5'000'000) {
+    EXPECT_GT(traffic.causes_of(field::kFaultEmergencyStop), clocks / 5'000'000);
+  }
 }
 
 void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
@@ -237,16 +237,38 @@ void resets_in_accesses(unsigned axes) {
   ask.araddr = reg::kAxes;
   model::CardModel::Inputs reset;
   reset.rst = true;
+  constexpr std::uint64_t kFilled = 1000;  // clocks: longer than the registers are filled, with any number of axes
   for (unsigned at = 0; at < 24; ++at) {
-    card.run({}, 500);
+    card.run({}, kFilled);
     card.run(ask, at);
     card.run(reset, 1);
-    card.run(ask, 500);
+    card.run(ask, kFilled);
     // The answers to what the first clocks after it asked for stand.
     EXPECT_TRUE(card.model().bus().bvalid && card.model().bus().rvalid) << at;
     card.run(reset, 1);
   }
   expect_all_compared(card, axes, 24'000);
+}
+
+// The emergency stop at moments around the end of a reset, while the registers are filled: what a stop leaves in them
+// and all that they hold besides is read back.
+void emergency_stop_after_a_reset(unsigned axes) {
+  sim::LockstepCard card = test::card_under_test(axes, 13, 0);
+  AxiHost host(card, 13);
+  host.wait(1000);
+  for (const std::uint64_t at : {0, 1, 30, 100, 200, 400, 440, 450, 460, 590, 610, 620}) {
+    host.reset(1);
+    host.wait(at);
+    host.press_emergency_stop(true);
+    host.wait(3);
+    host.press_emergency_stop(false);
+    host.wait(1000);
+    EXPECT_EQ(host.read(reg::kFault), field::kFaultEmergencyStop) << at;
+    EXPECT_EQ(host.read(reg::kStopFault), field::kFaultEmergencyStop) << at;
+    EXPECT_EQ(host.read(reg::kRestFault), field::kFaultEmergencyStop) << at;
+    for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4) host.read(address);
+  }
+  expect_all_compared(card, axes, 50'000);
 }
 
 class CardJoins : public testing::TestWithParam<unsigned> {};
@@ -263,11 +285,15 @@ TEST_P(CardJoins, ResetsInAccesses) {
   EXPECT_EQ(lockstep::judge([] { resets_in_accesses(GetParam()); }), "");
 }
 
+TEST_P(CardJoins, AnEmergencyStopAfterAReset) {
+  EXPECT_EQ(lockstep::judge([] { emergency_stop_after_a_reset(GetParam()); }), "");
+}
+
 TEST_P(CardJoins, AProbeAndTheGuard) {
   EXPECT_EQ(lockstep::judge([] { guard_behind_a_probe(GetParam()); }), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Axes, CardJoins, testing::Values(3U, 4U),
+INSTANTIATE_TEST_SUITE_P(Axes, CardJoins, testing::Values(3U, 4U, 7U),
                          [](const auto& axes) { return std::to_string(axes.param); });
 
 }  // namespace

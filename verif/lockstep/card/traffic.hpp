@@ -408,8 +408,9 @@ inline void Traffic::machine_inputs() {
 // Of an input that changes; where the card has no captures it is refused.
 inline void Traffic::select_capture() {
   const std::uint64_t edges = one_in(10) ? 0 : (1 + below(3)) << 8;
-  const std::uint32_t continuous = one_in(2) ? field::kCaptureSelectContinuous : 0;
+  std::uint32_t continuous = one_in(2) ? field::kCaptureSelectContinuous : 0;
   const std::uint32_t queue = one_in(2) ? field::kCaptureSelectQueue : 0;
+  if (queue != 0) continuous = field::kCaptureSelectContinuous;  // else no queue ever is full
   host_.write(reg::capture_select(static_cast<std::uint32_t>(below(4))),
               static_cast<std::uint32_t>(below(16) | edges) | continuous | queue);
 }

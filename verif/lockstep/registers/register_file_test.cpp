@@ -26,7 +26,7 @@ namespace reg = card_map::reg;
 constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
-constexpr std::uint64_t kComparedSignals = 19;
+constexpr std::uint64_t kComparedSignals = 20;
 constexpr bool kMachineInputs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kMachineInputs);
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
@@ -424,6 +424,7 @@ class Bench {
     checker_.compare("abort_o", rtl_->abort_o, out.abort);
     checker_.compare("probe_clear_o", rtl_->probe_clear_o, out.probe_clear);
     checker_.compare("flush_o", rtl_->flush_o, out.flush);
+    checker_.compare("filling_o", rtl_->filling_o, model_.filling());
     checker_.compare("stream_write_o", rtl_->stream_write_o, out.stream_write);
     checker_.compare("start", get(rtl_->start_o, start::kStart), out.start);
     checker_.compare("setting_o, set", get(rtl_->setting_o, setting::kSet), out.setting.set);

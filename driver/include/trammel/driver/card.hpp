@@ -192,7 +192,7 @@ class Card {
   void set_soft_limit_ramps(bool ramp);
 
   // Pulses on outputs. A channel whose period is written ends its pulse and begins anew. ArgumentError where the card
-  // has none, for outputs that it lacks and for a period beyond its limits. Three writes.
+  // has none, for outputs that it lacks and for a period beyond its limits. One read and three writes.
   bool has_pwm() const;
   void set_pwm(const PwmChannels& channels);
   // As they stand in the card. ArgumentError where it has none.

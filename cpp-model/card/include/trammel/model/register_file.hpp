@@ -196,6 +196,9 @@ class RegisterFile {
   // What `irq` shows a clock later.
   bool interrupt(const Inputs& in) const;
 
+  // After a reset the registers are filled, and no snapshot can be taken.
+  bool filling() const;
+
   // Clocks since reset.
   std::uint64_t time() const { return state_.time; }
 
