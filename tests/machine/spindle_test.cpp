@@ -26,11 +26,14 @@ TEST(Spindle, IsReadAndServesM3AndM4) {
   apply_override(machine, "spindle.pwm_hz=25000");
   apply_override(machine, "spindle.max_s=24000");
   apply_override(machine, "spindle.spin_up_s=4");
+  EXPECT_EQ(machine.outputs.at_speed_s, 30);
+  apply_override(machine, "spindle.at_speed_s=7");
   EXPECT_EQ(machine.outputs.pwm, 8);
   EXPECT_EQ(machine.outputs.spindle(), 8);
   EXPECT_EQ(machine.outputs.pwm_hz, 25000);
   EXPECT_EQ(machine.outputs.max_s, 24000);
   EXPECT_EQ(machine.outputs.spin_up_s, 4);
+  EXPECT_EQ(machine.outputs.at_speed_s, 7);
   EXPECT_FALSE(machine.outputs.laser);
   EXPECT_EQ(machine.outputs.safe_at_cause(), 0);
 }

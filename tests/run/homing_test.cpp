@@ -81,7 +81,7 @@ TEST_F(HomingTest, AxesHomeTogetherAndInSequence) {
   home({0, 1, 2});
   EXPECT_EQ(card_->read_place().homed, 7);
   EXPECT_NEAR(coordinate(0), 5, 0.013);
-  for (std::size_t axis : {1, 2}) EXPECT_NEAR(coordinate(axis), 0, 0.013);
+  for (const std::size_t axis : {1U, 2U}) EXPECT_NEAR(coordinate(axis), 0, 0.013);
   EXPECT_NEAR(static_cast<double>(bus_->places()[1]), -500, 1.01);
   EXPECT_NEAR(static_cast<double>(bus_->places()[2]), 400, 1.01);
 }

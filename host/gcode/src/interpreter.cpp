@@ -213,7 +213,10 @@ void Interpreter::switch_outputs(const Context& context) {
 // A spindle takes its time to a new speed, and cutting waits for it.
 void Interpreter::spin_up(LineMotions& motions) {
   const machine::MachineOutputs& outputs = machine_.outputs;
-  if (outputs.pwm != 0 && outputs.spin_up_s > 0 && modes_.spindle != kSpindleOff) stop(motions, outputs.spin_up_s);
+  if (modes_.spindle == kSpindleOff) return;
+  const bool awaits = machine_.awaits_spindle();
+  const double seconds = outputs.pwm != 0 ? outputs.spin_up_s : 0;
+  if (awaits || seconds > 0) stop(motions, seconds).awaits_spindle = awaits;
 }
 
 // A laser is on in a motion at feed, never in a traverse or a probe; standing it may be where the next one would be at
@@ -251,10 +254,11 @@ void Interpreter::change_outputs(std::uint16_t set, std::uint16_t clear, LineMot
   motion.clear = clear;
 }
 
-void Interpreter::stop(LineMotions& motions, double seconds) {
+Motion& Interpreter::stop(LineMotions& motions, double seconds) {
   Motion& motion = motions.add(MotionKind::kDwell, line_);
   motion.target = here_.at;
   motion.seconds = seconds;
+  return motion;
 }
 
 bool Interpreter::move(const Context& context) {

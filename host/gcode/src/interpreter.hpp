@@ -104,7 +104,7 @@ class Interpreter final : public Predefined {
   bool laser_may_burn(MotionKind kind) const;
   void set_power(LineMotions& motions, std::size_t first) const;
   void change_outputs(std::uint16_t set, std::uint16_t clear, LineMotions& motions);
-  void stop(LineMotions& motions, double seconds);
+  Motion& stop(LineMotions& motions, double seconds);
   bool go_home(const Context& context, bool second);
   bool set_system(const Context& context);
   bool set_origin(const Context& context, bool local);

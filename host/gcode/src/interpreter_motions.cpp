@@ -185,7 +185,10 @@ class Interpreter::CycleMotions final : public CycleSink {
     go(CycleStep::kRapid, target);
   }
   void level(CycleStep how, double to) override {
-    if (how == CycleStep::kDwell) return in_.stop(context_.motions, seconds_);
+    if (how == CycleStep::kDwell) {
+      in_.stop(context_.motions, seconds_);
+      return;
+    }
     Place target = in_.here_;
     target.at[axes_.normal] = to;
     go(how, target);

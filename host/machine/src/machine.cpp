@@ -1,5 +1,7 @@
 #include "trammel/machine/machine.hpp"
 
+#include "trammel/driver/roles.hpp"
+
 namespace trammel::machine {
 
 std::optional<std::size_t> Machine::axis(char letter) const {
@@ -24,6 +26,10 @@ std::vector<std::size_t> Machine::second_motors() const {
     if (axes[i].second_motor) result.push_back(i);
   }
   return result;
+}
+
+std::uint32_t Machine::spindle_at_speed() const {
+  return inputs.roles[driver::Role(driver::CardRole::kSpindleAtSpeed).number()].inputs;
 }
 
 }  // namespace trammel::machine

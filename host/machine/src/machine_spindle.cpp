@@ -13,6 +13,7 @@ namespace {
 constexpr Range kPwmFrequency{1, 1e6, "Hz", "the card's periods have 27 bits of clocks"};
 constexpr Range kMostS{1e-3, 1e9, "", "the S of full pulses"};
 constexpr Range kSpinUp{0, 600, "s", "a spindle that takes longer is broken"};
+constexpr Range kAtSpeed{0, 600, "s", "a spindle that takes longer is broken"};
 
 std::uint16_t output_of(const Source& source, const toml::value& value) {
   if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMaxOutputs) {
@@ -33,8 +34,10 @@ void set_entry(const Source& source, MachineOutputs& outputs, const std::string&
     outputs.laser = true_or_false(source, path, value);
   } else if (key == "spin_up_s") {
     outputs.spin_up_s = number(source, path, value, kSpinUp);
+  } else if (key == "at_speed_s") {
+    outputs.at_speed_s = number(source, path, value, kAtSpeed);
   } else {
-    refuse_key(source, value, "spindle.", key, {"output", "pwm_hz", "max_s", "laser", "spin_up_s"});
+    refuse_key(source, value, "spindle.", key, {"output", "pwm_hz", "max_s", "laser", "spin_up_s", "at_speed_s"});
   }
 }
 

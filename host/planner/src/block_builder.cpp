@@ -212,6 +212,7 @@ bool BlockBuilder::build_dwell(Block& block) {
   block.geometry = Geometry::kDwell;
   block.dwell_clocks = static_cast<std::uint64_t>(std::llround(clocks));
   block.dwell_seconds = motion_.seconds;
+  block.awaits_spindle = motion_.awaits_spindle;
   return true;
 }
 

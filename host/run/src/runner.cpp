@@ -145,11 +145,31 @@ class ProgramStream final : private driver::CommandSink {
   void put(const driver::Command& command) override {
     if (first_of_block_) {
       if (single_block_ && commands_ != 0 && planned_.block.line != line_) stream_.finish();
+      if (awaits_spindle_) await_spindle();
+      awaits_spindle_ = planned_.block.awaits_spindle;
       line_ = planned_.block.line;
       for (Observer* observer : observers_) observer->sending(planned_);
       first_of_block_ = false;
     }
     send(command);
+  }
+  // All before it is done first. A fault that comes meanwhile is told by what is sent next.
+  void await_spindle() {
+    constexpr std::chrono::milliseconds kLook{5};
+    stream_.finish();
+    const std::uint32_t inputs = machine_.spindle_at_speed();
+    const std::chrono::duration<double> longest(machine_.outputs.at_speed_s);
+    for (std::chrono::nanoseconds waited{0}; (card_.read_inputs() & inputs) == 0; waited += kLook) {
+      if (card_.read_status().faulted) return;
+      if (waited >= longest) {
+        throw RunError(pipeline_.file(), line_,
+                       fmt::format("the spindle is not at speed after {:g} s: no input of [inputs] spindle_at_speed is "
+                                   "active; spindle.at_speed_s of the machine file is the longest wait",
+                                   longest.count()));
+      }
+      driver::serve_requests(card_);
+      card_.bus().sleep(kLook);
+    }
   }
   void send(const driver::Command& command) {
     announce(command);
@@ -206,7 +226,8 @@ class ProgramStream final : private driver::CommandSink {
   std::vector<driver::Command>* probe_paths_ = nullptr;  // while a probe's commands are gathered
   planner::PlannedBlock planned_;
   bool first_of_block_ = true;
-  std::uint64_t commands_ = 0;  // put
+  bool awaits_spindle_ = false;  // before the next block
+  std::uint64_t commands_ = 0;   // put
   LineRing lines_;
   std::uint32_t held_until_;  // so many pieces and barriers have begun
   bool& begins_;

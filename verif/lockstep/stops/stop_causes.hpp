@@ -77,7 +77,11 @@ Kind& first_of(Program& program) {
   throw std::logic_error("the program has no such command");
 }
 
-inline void break_pieces(Program& program, unsigned clock) { last_piece(program).ticks = kFirstWindowTick + clock; }
+inline void break_pieces(Program& program, unsigned clock) {
+  std::uint64_t& ticks = last_piece(program).ticks;
+  if (ticks == kFirstWindowTick + clock) throw std::logic_error("the piece is not broken by what it has already");
+  ticks = kFirstWindowTick + clock;
+}
 inline void break_arc(Program& program, unsigned clock) {
   auto& arc = first_of<driver::ArcCommand>(program);
   arc.ticks = arc.path_ticks = program.paths[0].ticks = last_piece(program).ticks = kFirstWindowTick + clock;

@@ -180,7 +180,7 @@ inline Program conic_program() {
 
 // Speeds up from a sixth of the feed over the window.
 inline Program ramp_program() {
-  Program program = program_of(feed_of(140), long_line(164));
+  Program program = program_of(feed_of(160), long_line(184));
   driver::FeedCommand piece = feed_of(24, 6 * kTickClocks);
   piece.acceleration = static_cast<std::int64_t>((feed_of(1).rate - piece.rate) / 30);
   program.commands.insert(program.commands.begin(), piece);

@@ -44,6 +44,7 @@ struct Motion {
   // What S asks for in it, 0 .. 1 of max_s: the spindle's pulses, 0 where it is off and where a laser is dark.
   double power = 0;
   bool power_follows = false;    // the speed on the path: at the motion's feed it is `power`
+  bool awaits_spindle = false;   // kDwell: what comes behind it waits until the spindle is at speed
   bool probe_away = false;       // kProbe: until the probe is free, else until it is touched
   bool probe_must_trip = false;  // a way to the target without that is an error
 };

@@ -105,7 +105,8 @@ struct MachineOutputs {
   double pwm_hz = 1000;  // 1 .. 10^6
   double max_s = 1000;   // the S of full pulses, > 0
   bool laser = false;    // dark in traverses; M4: power follows the speed on the path; off at the cause of a stop
-  double spin_up_s = 0;  // after M3, M4 and each new S; not of a laser
+  double spin_up_s = 0;    // after M3, M4 and each new S; not of a laser
+  double at_speed_s = 30;  // the longest wait then for an input with the role spindle at speed; not of a laser
 
   // Switched by the card itself, to 0 (off) or to 1 (on): an output is in one of the two.
   std::uint16_t off_at_cause = 0;  // in the clock of a fault, and at an abort: a laser
@@ -216,6 +217,9 @@ struct Machine {
   std::optional<std::size_t> axis(char letter) const;
   // The axes that have a second motor, by index. On the card these motors follow the axes, in this order.
   std::vector<std::size_t> second_motors() const;
+  // Inputs that say that the spindle is at speed, and whether anybody waits for them; a laser has no speed.
+  std::uint32_t spindle_at_speed() const;
+  bool awaits_spindle() const { return spindle_at_speed() != 0 && !outputs.laser; }
   // Axes of the card that it takes, at most 8.
   std::size_t motors() const { return axes.size() + second_motors().size(); }
 };

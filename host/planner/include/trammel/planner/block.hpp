@@ -122,6 +122,7 @@ struct Block {
   // kDwell
   std::uint64_t dwell_clocks = 0;
   double dwell_seconds = 0;
+  bool awaits_spindle = false;  // what comes behind it waits until the spindle is at speed
 };
 
 // Of a block that is an arc.
