@@ -102,9 +102,9 @@ struct MachineOutputs {
 
   // Outputs whose pulses S sets; M3 and M4 switch them on, too. The table [spindle]; without it S has no effect.
   std::uint16_t pwm = 0;
-  double pwm_hz = 1000;  // 1 .. 10^6
-  double max_s = 1000;   // the S of full pulses, > 0
-  bool laser = false;    // dark in traverses; M4: power follows the speed on the path; off at the cause of a stop
+  double pwm_hz = 1000;    // 1 .. 10^6
+  double max_s = 1000;     // the S of full pulses, > 0
+  bool laser = false;      // dark in traverses; M4: power follows the speed on the path; off at the cause of a stop
   double spin_up_s = 0;    // after M3, M4 and each new S; not of a laser
   double at_speed_s = 30;  // the longest wait then for an input with the role spindle at speed; not of a laser
 
