@@ -14,5 +14,6 @@ NB_MODULE(_trammel, m) {
   bind_commands(m);
   bind_stream(m);
   bind_position_stream(m);
+  bind_world(m);
   bind_interpolation(m.def_submodule("interpolation", "The interpolators of both papers and their rivals."));
 }

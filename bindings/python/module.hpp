@@ -20,6 +20,7 @@ void bind_place(nb::module_& m, nb::class_<PythonCard>& card);
 void bind_commands(nb::module_& m);
 void bind_stream(nb::module_& m);
 void bind_position_stream(nb::module_& m);
+void bind_world(nb::module_& m);
 void bind_interpolation(nb::module_ m);
 
 }  // namespace trammel::python
