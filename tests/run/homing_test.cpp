@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <random>
@@ -39,6 +40,22 @@ TEST_F(HomingTest, OneAxisComesToItsFinalPosition) {
   EXPECT_EQ(card_->read_place().homed, 1);
   EXPECT_EQ(card_->read_faults(), 0U);
   EXPECT_EQ(bus_->places()[1], 1600) << "the others stand";
+}
+
+// A machine that has lost steps since it was homed is told by how much: here the switch has moved instead, by 8 pulses.
+TEST_F(HomingTest, TheEdgeTellsOfStepsThatWereLost) {
+  begin(homing_machine());
+  bus_->add({0, 0, 1000});
+  home({0});
+  bus_->move_switch(0, 1008);
+  home({0});
+  double counted = 0;
+  double now = 0;
+  ASSERT_EQ(std::sscanf(said().c_str(), "X: the edge was counted at %lf mm, and is %lf mm from now on", &counted, &now),
+            2)
+      << said();
+  EXPECT_EQ(now, -1);
+  EXPECT_NEAR(counted, -1 + 8.0 / kPerMm, 1.01 / kPerMm);
 }
 
 // Both motors turn for each axis: none is homed before both axes are.

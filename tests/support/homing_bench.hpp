@@ -58,6 +58,7 @@ class BusWithSwitches final : public driver::Bus {
   bool reports_refusals() const override { return true; }
 
   void add(const Switch& one) { switches_.push_back(one); }
+  void move_switch(std::size_t n, std::int64_t edge) { switches_.at(n).edge = edge; }
   std::vector<std::int64_t> places() const {
     std::vector<std::int64_t> at = engine_.positions();
     if (crossed_belts_) {
@@ -149,8 +150,12 @@ class HomingBench {
     configure(*card_, machine_);
     MachinePosition position(card_->read_snapshot(), machine_);
     keep_place(*card_, read_card_place(*card_), scales_of(machine_), motors_of(machine_));
-    return run::home(*card_, machine_, position, axes);
+    HomingOptions options;
+    options.say = [this](const std::string& text) { said_ = text; };
+    return run::home(*card_, machine_, position, axes, options);
   }
+  // What was said last.
+  const std::string& said() const { return said_; }
   // Where the machine believes to stand, mm.
   double coordinate(std::size_t axis) { return standing_at(machine_, read_card_place(*card_))[axis]; }
   std::string error_of(const std::vector<std::size_t>& axes) {
@@ -170,6 +175,7 @@ class HomingBench {
   machine::Machine machine_ = machine::default_machine();
   std::unique_ptr<sim::Engine> engine_;
   std::unique_ptr<BusWithSwitches> bus_;
+  std::string said_;
   std::unique_ptr<driver::Card> card_;
 };
 

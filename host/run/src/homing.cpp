@@ -295,7 +295,8 @@ void Homing::place(const Group& group, const Edges& edges) {
     if (edge != edges.end()) result.edge = coordinate(axis, edge->second);
     at[axis] = homing(axis).offset + now[axis] - result.edge;
     named |= 1U << axis;
-    say(fmt::format("{}: edge {:.4f} mm from where it stands", letter(axis), result.edge - now[axis]));
+    say(fmt::format("{}: the edge was counted at {:.4f} mm, and is {:.4f} mm from now on", letter(axis), result.edge,
+                    homing(axis).offset));
   }
   for (const auto& [axis, result] : homed_) done |= 1U << axis;
   std::uint8_t motors = 0;
