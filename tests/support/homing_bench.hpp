@@ -149,7 +149,12 @@ class HomingBench {
     bus_->look();
     configure(*card_, machine_);
     MachinePosition position(card_->read_snapshot(), machine_);
-    keep_place(*card_, read_card_place(*card_), scales_of(machine_), motors_of(machine_));
+    const CardPlace place = read_card_place(*card_);
+    if (scales_fit(place, machine_)) {
+      const gcode::Coordinates at = standing_at(machine_, place);
+      for (std::size_t n = 0; n < machine_.axes.size(); ++n) position.set(n, at[n]);
+    }
+    keep_place(*card_, place, scales_of(machine_), motors_of(machine_));
     HomingOptions options;
     options.say = [this](const std::string& text) { said_ = text; };
     return run::home(*card_, machine_, position, axes, options);
