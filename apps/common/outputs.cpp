@@ -242,4 +242,15 @@ void Outputs::commit(const std::string& summary) {
   }
 }
 
+void Outputs::commit_alone(Output& output) {
+  output.finish();
+  const SignalsWait wait;
+  try {
+    output.take_name();
+  } catch (...) {
+    output.give_name_back();
+    throw;
+  }
+}
+
 }  // namespace trammel::app

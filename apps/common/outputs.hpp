@@ -64,6 +64,8 @@ class Outputs {
   // All outputs whole, or none; `summary`, for people, goes to standard output, or to standard error where an option
   // has taken that, once nothing but a name can fail. Throws std::runtime_error.
   void commit(const std::string& summary = {});
+  // In place of it, of a run that failed: this one alone; the others leave no trace.
+  void commit_alone(Output& output);
 
  private:
   struct Kept {

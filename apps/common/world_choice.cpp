@@ -20,6 +20,7 @@ double world_mm(const world::World& world, std::size_t axis, std::int64_t pulses
 
 // The machine a while later, when no pulse comes any more: it still swings when the card has ended.
 world::World at_rest(world::World world) {
+  world.set_watcher(nullptr);
   world.run_to(world.now() + world.clock_hz());
   return world;
 }

@@ -28,6 +28,7 @@
 #include "program_check.hpp"
 #include "program_file.hpp"
 #include "run_report.hpp"
+#include "run_surroundings.hpp"
 #include "trammel/driver/low_level/requests.hpp"
 #include "trammel/report/page.hpp"
 #include "trammel/report/report_writer.hpp"
@@ -293,33 +294,84 @@ class SimulationProgress final : public run::Observer {
   ProgressBar bar_;
 };
 
-// The run itself, when all is checked: to the end of the motion.
-run::Outcome stream_to_simulation(const RunArguments& options, const machine::Machine& machine,
-                                  const sim::SimulationOptions& engine, double planned_seconds,
-                                  simulation::SimulatedRun& run, const world::World* world) {
-  run.make_card(engine);
-  SimulationProgress progress(run, planned_seconds, engine.clock_hz, options.progress);
-  run.runner().add(progress);
+// For the page of a run: what goes on around the card. Nothing without --report.
+struct PageListeners {
+  // After make_card().
+  PageListeners(const SimulationFiles& files, simulation::SimulatedRun& run, world::World* world) {
+    if (files.report == nullptr) return;
+    holds.emplace(run);
+    run.runner().add(*holds);
+    if (world != nullptr) record.emplace(*files.report, *world);
+  }
+  std::optional<HoldWatch> holds;
+  std::optional<WorldRecord> record;
+};
+
+// A simulation, its world, and who listens to them.
+struct Simulation {
+  const RunArguments& options;
+  const machine::Machine& machine;
+  run::PlannedProfile profile;
+  simulation::SimulatedRun& run;
+  world::World* world;
+  SimulationFiles& files;
+};
+
+void write_report(const Simulation& of, PageListeners& listeners, const simulation::RunResult& result,
+                  const std::optional<StopCause>& cause) {
+  if (listeners.record) listeners.record->finish();
+  const WorldRecord* const record = listeners.record ? &*listeners.record : nullptr;
+  of.run.report()->finish(
+      report_json(result, of.profile, surroundings_json(of.machine, result, *listeners.holds, of.world, record, cause)),
+      cause.has_value());
+}
+
+// Of a run that a cause has ended: the page alone. What goes wrong with it is said, and the run's own error stays.
+void report_stop(const Simulation& of, PageListeners& listeners, const run::RunError& error) {
+  if (of.files.report == nullptr) return;
   try {
-    return run_until_signal(run.runner(), run.card(), machine, options.stream);
+    const auto motors = of.machine.motors();
+    const StopCause cause = stop_cause(of.run.card(), error, of.run.runner().last_plan(), motors);
+    write_report(of, listeners, of.run.stopped_result(listeners.holds->commands()), cause);
+    of.files.all.commit_alone(*of.files.report);
+    tell("note", fmt::format("{} shows the run up to its stop", *of.options.report));
+  } catch (const std::exception& why) {
+    tell("note", fmt::format("--report: {}", why.what()));
+  }
+}
+
+// The run itself, when all is checked: to the end of the motion.
+run::Outcome stream_to_simulation(const Simulation& of, const sim::SimulationOptions& engine, double planned_seconds,
+                                  PageListeners& listeners) {
+  SimulationProgress progress(of.run, planned_seconds, engine.clock_hz, of.options.progress);
+  of.run.runner().add(progress);
+  try {
+    return run_until_signal(of.run.runner(), of.run.card(), of.machine, of.options.stream);
+  } catch (const run::RunError& error) {
+    if (of.world != nullptr) tell("note", world_text(*of.world, "; "));
+    report_stop(of, listeners, error);
+    throw;
   } catch (...) {
     // Whatever has stopped it: where that has left the machine.
-    if (world != nullptr) tell("note", world_text(*world, "; "));
+    if (of.world != nullptr) tell("note", world_text(*of.world, "; "));
     throw;
   }
 }
 
-void write_results(const RunArguments& options, const simulation::RunResult& result, const run::PlannedProfile& profile,
-                   report::ReportWriter* report, const world::World* world, SimulationFiles& files) {
+void write_results(const Simulation& of, PageListeners& listeners, const simulation::RunResult& result) {
+  const RunArguments& options = of.options;
+  SimulationFiles& files = of.files;
+  const world::World* const world = of.world;
   if (options.stream) warn(plan_warnings(result.plan));
   if (files.trace != nullptr) require_whole_waveform(files.trace->path_to_write(), *options.engine.trace);
-  if (files.json != nullptr)
-    files.json->write(json_text(result, profile, world != nullptr ? world_json(*world) : nullptr));
+  if (files.json != nullptr) {
+    files.json->write(json_text(result, of.profile, world != nullptr ? world_json(*world) : nullptr));
+  }
   if (files.parameters != nullptr) files.parameters->write(parameters_text(result.outcome.parameters));
   if (files.plot != nullptr) files.plot->write(run::svg(result.plot));
-  if (report != nullptr) report->finish(report_json(result, profile));
+  if (files.report != nullptr) write_report(of, listeners, result, std::nullopt);
   const std::string about_world = world != nullptr ? "  " + world_text(*world, "\n  ") + "\n" : "";
-  files.all.commit(run_summary(result, profile) + about_world + options.machine.line());
+  files.all.commit(run_summary(result, of.profile) + about_world + options.machine.line());
 }
 
 void run_in_simulation(const RunArguments& options) {
@@ -351,9 +403,12 @@ void run_in_simulation(const RunArguments& options) {
   if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
   warn(plan_warnings(plan));
   tell_of_engine(engine, axes, plan.seconds);
-  const run::Outcome outcome = stream_to_simulation(options, machine, engine, plan.seconds, run, world.get());
-  write_results(options, run.result(outcome), run::planned_profile(machine, settings.settings), run.report(),
-                world.get(), files);
+  run.make_card(engine);
+  PageListeners listeners(files, run, world.get());
+  const Simulation simulation{options, machine, run::planned_profile(machine, settings.settings), run, world.get(),
+                              files};
+  const run::Outcome outcome = stream_to_simulation(simulation, engine, plan.seconds, listeners);
+  write_results(simulation, listeners, run.result(outcome));
 }
 
 }  // namespace

@@ -325,10 +325,12 @@ std::string json_text(const RunResult& result, const run::PlannedProfile& profil
   return json.dump(2) + "\n";
 }
 
-std::string report_json(const RunResult& result, const run::PlannedProfile& profile) {
+std::string report_json(const RunResult& result, const run::PlannedProfile& profile,
+                        const nlohmann::ordered_json& surroundings) {
   nlohmann::ordered_json json = run_json(result, profile);
   json["deviation_places"] = {{"line", place_json(result.line_place, result.end.axes.size())},
                               {"arc", place_json(result.arc_place, result.end.axes.size())}};
+  json.update(surroundings);
   // A name may hold any bytes.
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

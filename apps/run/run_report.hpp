@@ -38,7 +38,8 @@ nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds)
 // `world`: what stands behind the pins; null where nothing does.
 std::string json_text(const simulation::RunResult& result, const run::PlannedProfile& profile,
                       const nlohmann::ordered_json& world);
-// The same and what the page of a run says beside it, in one line.
-std::string report_json(const simulation::RunResult& result, const run::PlannedProfile& profile);
+// The same and what the page of a run says beside it, in one line; `surroundings`: members to add.
+std::string report_json(const simulation::RunResult& result, const run::PlannedProfile& profile,
+                        const nlohmann::ordered_json& surroundings);
 
 }  // namespace trammel::app

@@ -1,58 +1,16 @@
 #include "trammel/report/page_stream.hpp"
 
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <cstdint>
 #include <random>
 #include <string>
 
+#include "stream_reader.hpp"
 #include "text.hpp"
 
 namespace trammel::report {
 namespace {
-
-std::string from_base64(const std::string& text) {
-  static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int held = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    bits = bits << 6 | static_cast<std::uint32_t>(kDigits.find(c));
-    held += 6;
-    if (held < 8) continue;
-    held -= 8;
-    bytes += static_cast<char>(bits >> held & 0xFF);
-  }
-  return bytes;
-}
-
-struct Elements {
-  std::size_t count = 0;
-  std::string bytes;
-};
-
-Elements elements(const std::string& page, const std::string& name) {
-  const std::string begin = "<script type=\"text/plain\" data-stream=\"" + name + "\">";
-  Elements found;
-  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + 1)) {
-    const std::size_t from = at + begin.size();
-    found.bytes += from_base64(page.substr(from, page.find('<', from) - from));
-    ++found.count;
-  }
-  return found;
-}
-
-std::string inflated(const std::string& bytes, std::size_t size) {
-  std::string out(size + 1, '\0');
-  auto length = static_cast<uLongf>(out.size());
-  const int status = uncompress(reinterpret_cast<Bytef*>(out.data()), &length,
-                                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()));
-  EXPECT_EQ(status, Z_OK);
-  out.resize(length);
-  return out;
-}
 
 // From RFC 4648.
 TEST(Base64, IsThatOfTheStandard) {

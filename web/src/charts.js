@@ -2,6 +2,7 @@
 import uPlot from 'uplot'
 import { make } from './dom.js'
 import { axisColour, colour } from './theme.js'
+import { drawMark } from './lanes.js'
 import { decimals, fixed, number, ticks } from './format.js'
 
 const kFont = '11px system-ui, "Noto Sans", "DejaVu Sans", sans-serif'
@@ -32,10 +33,21 @@ export function rowsOf(run) {
       })),
     })),
     {
-      id: 'override', title: 'Override', unit: '%', height: 64, shown: run.facts.events.length > 0, least: 0, room: 100,
+      id: 'override', title: 'Override', unit: '%', height: 64, shown: run.facts.events.length > 0 || run.facts.causes?.length > 0, least: 0, room: 100,
       lines: [{ label: 'in force', colour: 'commanded', data: (s) => s.ratio, value: (r) => r.percent ?? NaN }],
     },
+    ...apartRow(run),
   ]
+}
+// Of a machine behind the pins: from the start where a carriage has lost its place.
+function apartRow(run) {
+  const { apart, parted } = run.surroundings
+  const lines = apart.map((axis, n) => ({ axis, n })).filter(({ axis }) => axis.times.length > 0)
+  if (!lines.length) return []
+  return [{
+    id: 'apart', title: 'Pulses − carriage', unit: 'mm', height: 76, shown: parted.length > 0,
+    lines: lines.map(({ axis: { letter }, n }) => ({ label: letter, axis: letter, data: (s) => s.apart[n], value: (r) => r.apart[n] })),
+  }]
 }
 export const turns = (run, motor) => run.steps[motor].count > 0 || run.motors[motor].beside > 0
 const moves = (run, axis) => run.kinematics.inverse[axis].some(({ motor }) => turns(run, motor))
@@ -120,6 +132,10 @@ export class Chart {
     for (const [from, to] of run.gaps) {
       const a = plot.valToPos(run.seconds(from), 'x', true), b = plot.valToPos(run.seconds(to), 'x', true)
       if (b > bbox.left && a < bbox.left + bbox.width && b - a > 1) ctx.fillRect(a, bbox.top, b - a, bbox.height)
+    }
+    for (const mark of run.surroundings.marks) {
+      const at = plot.valToPos(run.seconds(mark.cycle), 'x', true)
+      if (at >= bbox.left && at <= bbox.left + bbox.width) drawMark(ctx, mark, at, bbox.top, bbox.height)
     }
     ctx.setLineDash([6, 4])
     ctx.lineWidth = 1

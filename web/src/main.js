@@ -5,6 +5,7 @@ import { Achieved } from './achieved.js'
 import { readout, sample } from './samples.js'
 import { coloured, View } from './view.js'
 import { Chart, rowsOf } from './charts.js'
+import { Lanes } from './lanes.js'
 import { Scope } from './scope.js'
 import { Program } from './program.js'
 import { fillSummary, totalsOf } from './summary.js'
@@ -24,6 +25,7 @@ class Page {
     this.head()
     this.charts = rowsOf(run).map((row) => new Chart(row, run))
     this.scope = new Scope(run)
+    this.lanes = new Lanes(run)
     this.program = new Program(byId('program'), run, (line) => this.goToLine(line))
     fillSummary(byId('summary'), run, (line) => this.goToLine(line), (cycle) => this.setCycle(cycle, true))
     this.view = new View(byId('view'), run, ['tools', 'legend', 'place'].map(byId))
@@ -120,6 +122,9 @@ class Page {
       rows.append(chart.element)
       chart.element.hidden = !chart.row.shown
     }
+    // Below the speed, so that they stand beside each other.
+    this.charts[0].element.after(this.lanes.element)
+    this.lanes.element.hidden = !this.run.surroundings.busy
     rows.append(this.scope.element)
     this.axis = make('canvas')
     rows.append(make('div', { class: 'row', id: 'axis' }, make('div', { class: 'label' }, 's'), make('div', { class: 'plot' }, this.axis)))
@@ -134,6 +139,8 @@ class Page {
       button('+', 'Less time (+)', () => this.zoomTime(0.5)),
       button('Clocks', 'Single clocks at the cursor (K)', () => this.closeTime())))
     const all = [...this.charts.map((chart) => [chart.row.title, chart.element]), ['Pins', this.scope.element]]
+    const { surroundings } = this.run
+    if (surroundings.lanes.length || surroundings.marks.length) all.splice(1, 0, ['Inputs', this.lanes.element])
     byId('shown').append(group(...all.map(([title, element]) => {
       const one = button(title.replace('Axis ', '').replace(/^./, (c) => c.toUpperCase()), `Show or hide: ${title}`, () => {
         element.hidden = !element.hidden
@@ -152,6 +159,7 @@ class Page {
     this.builtTheme = isDark()
     for (const chart of this.charts) chart.build(width)
     this.scope.build(width)
+    this.lanes.build(width)
     this.drawCharts()
   }
   drawCharts() {
@@ -166,6 +174,7 @@ class Page {
     const window = [this.run.seconds(from), this.run.seconds(to)]
     for (const chart of this.charts) if (!chart.element.hidden) chart.draw(samples, window)
     if (!this.scope.element.hidden) this.scope.draw(from, to, kScale)
+    if (!this.lanes.element.hidden) this.lanes.draw(from, to, kScale)
     this.drawAxis(window)
     this.placeCursor()
   }
@@ -231,6 +240,7 @@ class Page {
     const now = readout(run, this.achieved, cycle)
     for (const chart of this.charts) chart.read(now)
     this.scope.read(now)
+    this.lanes.read(cycle)
     this.view.setCycle(cycle)
     const line = run.paths.count ? run.paths.lines[now.path] : 0
     this.program.highlight(line)

@@ -1,5 +1,6 @@
 // A run as the page knows it: commanded motion and executed steps on one time axis, card clocks. No document here.
 import { Kinematics } from './kinematics.js'
+import { Surroundings } from './surroundings.js'
 import { decodeMotion, decodePaths, decodeSteps, decodeTimes, kArc, kLine, kPause, kSpaceArc } from './decode.js'
 
 // The last index whose value is <= x; -1 where there is none.
@@ -61,10 +62,18 @@ export class Run {
     this.pulses = this.steps.reduce((sum, steps) => sum + steps.count, 0)
     this.paths = decodePaths(streams.get('paths') ?? empty, this.axes.length, this.start)
     this.motion = decodeMotion(streams.get('motion') ?? empty)
+    this.stopped = run.stopped != null
+    if (this.stopped) this.leaveOutUnbegun()
     this.placeInTime(decodeTimes(streams.get('times') ?? empty))
     this.placeOnPaths()
     this.mergeSteps()
     this.lineIndex()
+    this.surroundings = new Surroundings(this, streams)
+  }
+  // Motion that was sent and never begun, of a run that did not come to its end.
+  leaveOutUnbegun() {
+    const { motion, paths } = this
+    while (motion.count > 0 && motion.paths[motion.count - 1] >= paths.count) --motion.count
   }
 
   // ---- time: card clocks and the motion clock
@@ -83,7 +92,7 @@ export class Run {
       const usable = (value) => value > 0.01 ? value : this.fullRatio
       const first = points[i], last = points[end - 1]
       const enter = usable(inner[0] ?? 0), leave = usable(inner.at(-1) ?? 0)
-      const stop = end < points.length ? points[end].begin : total
+      const stop = end < points.length ? points[end].begin : this.stopped ? last.motion : total
       const from = Math.max(cycles.at(-1) ?? 0, first.cycle - (first.motion - first.begin) / enter)
       if (cycles.length) this.gaps.push([cycles.at(-1), from])
       else if (from > 0) this.gaps.push([0, from])

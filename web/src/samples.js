@@ -35,8 +35,10 @@ export function sample(run, achieved, from, to, columns) {
   const path = new Envelope(columns)
   const rows = ['speed', 'acceleration', 'jerk'].map(() => run.axes.map(() => new Envelope(columns)))
   const ratio = new Envelope(columns)
+  const { surroundings } = run
+  const apart = surroundings.apart.map(() => new Envelope(columns))
   const mean = new Float64Array(2 * columns), least = new Float64Array(2 * columns), most = new Float64Array(2 * columns)
-  const all = [path, ratio, ...rows.flat()]
+  const all = [path, ratio, ...rows.flat(), ...apart]
   const width = (to - from) / columns
   const { motion, times, paths } = run
 
@@ -75,6 +77,11 @@ export function sample(run, achieved, from, to, columns) {
     x[2 * column] = run.seconds(t0 + width / 4)
     x[2 * column + 1] = run.seconds(t0 + 3 * width / 4)
     for (const envelope of all) envelope.begin(column)
+    apart.forEach((envelope, n) => {
+      const { times: changes, pulses, pulses_per_mm: scale } = surroundings.apart[n]
+      envelope.put(surroundings.apartAt(n, t0))
+      for (let i = lastAtMost(changes, t0) + 1; i < changes.length && changes[i] < t1; ++i) envelope.put(pulses[i] / scale)
+    })
     // Pieces of the map of times in this column; between two motions all stand still.
     let i = lastAtMost(times.cycles, t0)
     if (i < 0) {
@@ -106,7 +113,7 @@ export function sample(run, achieved, from, to, columns) {
   for (let i = 0; i < ratio.values.length; ++i) if (!Number.isFinite(ratio.values[i])) ratio.values[i] = NaN
   return {
     x, path: path.values, mean, least, most, ratio: ratio.values,
-    axes: rows.map((row) => row.map((envelope) => envelope.values)),
+    axes: rows.map((row) => row.map((envelope) => envelope.values)), apart: apart.map((envelope) => envelope.values),
   }
 }
 
@@ -125,6 +132,7 @@ export function readout(run, achieved, cycle) {
     commanded: still ? 0 : run.pathSpeed(of, share[1]), achieved: achieved.at(cycle),
     axes: run.axes.map((_, a) => still ? [NaN, 0, 0, 0] : run.axisAt(of, a, share)),
     actual: run.axes.map((_, a) => achieved.axisAt(a, cycle)),
+    apart: run.surroundings.apart.map((_, n) => run.surroundings.apartAt(n, cycle)),
     positions: run.motors.map((_, motor) => run.positionAt(motor, cycle)),
   }
 }

@@ -2,6 +2,7 @@
 import { make } from './dom.js'
 import { axisColour, colour } from './theme.js'
 import { alpha, turns } from './charts.js'
+import { drawMark } from './lanes.js'
 import { lastAtMost } from './run.js'
 
 const kRow = 19
@@ -55,6 +56,10 @@ export class Scope {
       this.drawDirection(context, m, top + kRow + 3, kRow - 6)
       context.restore()
     })
+    for (const mark of this.run.surroundings.marks) {
+      if (mark.cycle < from || mark.cycle > to) continue
+      drawMark(context, mark, left + (mark.cycle - from) * this.view.scale, 0, this.height)
+    }
   }
   drawSteps(context, m, top, height) {
     const { pins, count } = this.run.steps[m]

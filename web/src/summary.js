@@ -2,6 +2,7 @@
 import { make } from './dom.js'
 import { duration, fixed, grouped, millimetres, number } from './format.js'
 import { kPause } from './decode.js'
+import { placeText } from './surroundings.js'
 
 // Seconds and millimetres with a feed, by rapids, and at rest.
 export function totalsOf(run) {
@@ -33,6 +34,7 @@ export function fillSummary(element, run, goToLine, goTo) {
     make('tbody', {}, ...rows.map((cells) => make('tr', {}, ...cells.map((cell) => make('td', {}, cell))))))
   const add = (title, ...content) => element.append(make('h2', {}, title), ...content)
 
+  if (facts.stopped != null) add('Stopped', make('p', {}, `${facts.stopped.replace(/^./, (c) => c.toUpperCase())}. What was not begun by then is not in this page.`))
   add('Run', table(null, [
     ['Time', duration(run.seconds(run.cycles))],
     ['Planned', duration(facts.planned_seconds)],
@@ -72,6 +74,7 @@ export function fillSummary(element, run, goToLine, goTo) {
       event.event === 'override' ? `override ${number(event.percent)} %`
         : event.event === 'input' ? `input ${event.input} ${event.level ? 'high' : 'low'}` : event.event])))
   }
+  fillSurroundings(run, add, table, line, goTo)
   const words = Object.entries(facts.accepted_words)
   if (words.length) {
     add('Words without effect', make('p', {}, words.map(([word, count]) => `${word} (${count})`).join(', ')))
@@ -81,4 +84,29 @@ export function fillSummary(element, run, goToLine, goTo) {
     const beside = run.motors.reduce((sum, motor) => sum + motor.beside, 0)
     add('Window', make('p', {}, `Pulses from ${fixed(run.seconds(from), 3)} s to ${fixed(run.seconds(Math.min(to, run.cycles)), 3)} s are in this page; ${grouped(beside)} others are not.`))
   }
+}
+
+// Causes with their reactions, and what a machine behind the pins has made of the pulses.
+function fillSurroundings(run, add, table, line, goTo) {
+  const { surroundings, facts } = run
+  const when = (cycle) => make('button', { class: 'go', onclick: () => goTo(cycle), title: 'Go there' }, `${fixed(run.seconds(cycle), 4)} s`)
+  const causes = surroundings.marks.filter(({ parting }) => !parting)
+  if (causes.length) {
+    add('Causes and reactions', table(['cause', 'reaction'], causes.map((mark) => [
+      make('span', {}, mark.name, make('br'), `${placeText(run, mark.place)} mm`),
+      make('span', {}, mark.reaction, make('br'), when(mark.cycle), make('br'), line(mark.line)),
+    ])))
+  }
+  const changed = surroundings.lanes.filter(({ times }) => times.length)
+  if (changed.length) {
+    add('Inputs', table(['', 'edges', 'first', 'last'], changed.map(({ name, times }) => [
+      name, grouped(times.length), when(times[0]), when(times.at(-1))])))
+  }
+  if (!facts.world) return
+  const lost = (axis, pulses) => `${grouped(pulses).replace('-', '−')} steps, ${fixed(pulses / axis.pulses_per_mm, 3)} mm`
+  add('Pulses and carriages', surroundings.parted.length
+    ? table(['', 'lost'], surroundings.parted.map((axis) => [
+      make('span', {}, `${axis.letter} from `, when(axis.began), ' on'),
+      make('span', {}, lost(axis, axis.commanded - axis.carriage), ' at the end', make('br'), lost(axis, axis.most_lost), ' at most')]))
+    : make('p', {}, 'No carriage has lost its place.'))
 }

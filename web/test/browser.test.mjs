@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { after, before, test } from 'node:test'
 import { chromium } from 'playwright-core'
-import { trammel } from './page.mjs'
+import { trammel, trammelStops } from './page.mjs'
 
 const command = process.env.TRAMMEL
 const examples = process.env.TRAMMEL_EXAMPLES
@@ -327,6 +327,55 @@ test('in a large window all charts are in view; in a small one nothing covers th
     })
     assert.deepEqual({ over: seen.over, cut: seen.cut }, { over: [], cut: [] }, `${width} x ${height}`)
     assert.ok(seen.height >= 120, `the path is ${seen.height} pixels high`)
+  }
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+// A button holds, a weak motor loses steps, a limit stops the run.
+function eventfulReport() {
+  const program = join(folder, 'eventful.ngc'), page = join(folder, 'eventful.html'), world = join(folder, 'world.toml'), events = join(folder, 'events.txt')
+  writeFileSync(program, 'G21 G90\nG1 X20 Y5 F3000\nG1 X45 F9000\nG1 Y100 F6000\n')
+  writeFileSync(world, [
+    '[axis.x]', 'torque = 0.045', '[axis.y]', '[switch.y_plus]', 'input = 3', 'axis = "y"', 'above = 40',
+    '[button.feed_hold]', 'input = 6', '[button.cycle_start]', 'input = 7', ''].join('\n'))
+  writeFileSync(events, 'at 200 ms press feed_hold\nat 300 ms release feed_hold\nat 500 ms press cycle_start\n')
+  trammelStops(command, 'run', program, '--engine', 'model', '--clock', '400000', '--report', page, '--world', world, '--world-events', events,
+    '--set', 'inputs.y_limit_plus=3', '--set', 'inputs.feed_hold=6', '--set', 'inputs.cycle_start=7')
+  return page
+}
+test('inputs, causes, reactions, and where pulses and carriage part are seen', async () => {
+  const { page, said } = await open(eventfulReport())
+  await page.setViewportSize({ width: 1360, height: 920 })
+  await frame(page)
+  assert.ok(await drawn(page, '#row-inputs canvas') > 500, 'the lanes')
+  assert.ok(await drawn(page, '#row-apart canvas') > 500, 'the difference')
+  const lanes = await page.evaluate(() => [...document.querySelectorAll('#row-inputs .name')].map((one) => one.textContent))
+  assert.deepEqual(lanes, ['Y limit plus', 'feed hold', 'cycle start'])
+  // Each has a line in the charts, and as much of its text as there is room for.
+  const named = await page.evaluate(() => window.trammel.lanes.named)
+  assert.equal(named.length, 3, named.join('; '))
+  for (const name of ['feed hold button: hold', 'X: pulses and carriage part', 'LIMIT (axis 1 plus)']) {
+    assert.ok(named.some((text) => text.startsWith(name)), `${name} in ${named.join('; ')}`)
+  }
+  await page.evaluate(() => window.trammel.setCycle(window.trammel.run.cycles))
+  await frame(page)
+  const states = await page.evaluate(() => [...document.querySelectorAll('#row-inputs .label b')].map((one) => one.textContent))
+  assert.deepEqual(states, ['active', '–', 'active'])
+  await page.locator('#tab-summary').click()
+  const summary = await page.locator('#summary').textContent()
+  assert.match(summary, /By LIMIT \(axis 1 plus\), at line 4/)
+  assert.match(summary, /LIMIT \(axis 1 plus\)X 45\.000 Y 40\.\d{3}.*immediate stop/)
+  assert.match(summary, /X from \d\.\d{4} s on−?\d+ steps, −?-?\d+\.\d{3} mm at the end/)
+  // The mark's time in the table leads there, and its line in the charts stands under the cursor.
+  await page.locator('#summary .go', { hasText: ' s' }).first().click()
+  await frame(page)
+  assert.ok(await page.evaluate(() => window.trammel.run.surroundings.marks.some(({ cycle }) => cycle === window.trammel.cycle)))
+  for (const [width, height] of [[700, 900], [390, 844]]) {
+    await page.setViewportSize({ width, height })
+    await frame(page)
+    const cut = await page.evaluate(() => [...document.querySelectorAll('button')].filter((one) => one.offsetParent && one.getBoundingClientRect().right > innerWidth).map((one) => one.textContent))
+    assert.deepEqual(cut, [], `${width} x ${height}`)
   }
   assert.deepEqual(said, [])
   await page.close()

@@ -11,7 +11,8 @@ import { underRunsText } from '../src/summary.js'
 import { Bytes } from '../src/decode.js'
 import { lastAtMost } from '../src/run.js'
 import { readout, sample } from '../src/samples.js'
-import { readPage, trammel } from './page.mjs'
+import { activeAt } from '../src/surroundings.js'
+import { readPage, trammel, trammelStops } from './page.mjs'
 
 const command = process.env.TRAMMEL
 const examples = process.env.TRAMMEL_EXAMPLES
@@ -288,4 +289,92 @@ test('in a hold the actual speed of an axis is 0, and its sign is that of the mo
   assert.ok(Math.abs(actual(1.5) - 10) < 0.2, `${actual(1.5)}`)
   assert.equal(actual(2.6), 0)
   assert.ok(Math.abs(actual(7.5) + 10) < 0.2, `${actual(7.5)}`)
+})
+
+// Runs of a machine behind the pins, with the limits of the default world as roles.
+const roles = ['--set', 'inputs.x_limit_plus=1', '--set', 'inputs.feed_hold=6', '--set', 'inputs.cycle_start=7']
+function stoppedBy(text, ...options) {
+  const page = join(folder, 'stopped.html')
+  const said = trammelStops(command, 'run', programOf(text), '--engine', 'model', '--clock', '400000', '--report', page, ...roles, ...options)
+  return { ...readPage(page), said }
+}
+
+test('a limit stops the run, and its page ends there', () => {
+  const { run, said } = stoppedBy('G21 G90\nG1 Y1 F3000\nG1 X350 F6000\nG1 Y20\n', '--world', 'default')
+  assert.match(said, /stopped\.html shows the run up to its stop/)
+  const [mark, ...others] = run.surroundings.marks
+  assert.equal(others.length, 0)
+  assert.deepEqual([mark.name, mark.reaction, mark.line], ['LIMIT (axis 0 plus)', 'immediate stop', 3])
+  // The switch is at 300 mm; it stands 100 mm/s from there for a filter of 1 ms and the scan behind it.
+  assert.ok(mark.place[0] > 300 && mark.place[0] < 300.4, `${mark.place[0]} mm`)
+  assert.ok(Math.abs(run.coordinateAt(0, mark.cycle) - mark.place[0]) <= 2 / 80, 'its pulses say the same')
+  const lane = run.surroundings.lanes.find(({ name }) => name === 'X limit plus')
+  assert.equal(lane.detail, 'input 1, x_plus')
+  assert.equal(activeAt(lane, lane.times[0] - 1), 0)
+  assert.equal(activeAt(lane, run.cycles), 1)
+  const pressed = lane.times[0] / run.clockHz, stopped = mark.cycle / run.clockHz
+  assert.ok(stopped > pressed && stopped - pressed < 0.004, `pressed at ${pressed} s, stopped at ${stopped} s`)
+  assert.ok(Math.abs(run.coordinateAt(0, lane.times[0]) - 300) < 0.1, 'the switch is at 300 mm')
+  assert.equal(run.paths.lines.at(-1), 3, 'the fourth line was never begun')
+  assert.equal(run.paths.lines[run.pathAt(run.cycles)], 3)
+})
+
+test('an emergency stop on a ramp says so, and a button without a world', () => {
+  const stop = '--set', reaction = 'outputs.on_emergency_stop="ramp"'
+  const events = join(folder, 'events.txt')
+  writeFileSync(events, 'at 400 ms press estop\n')
+  const text = 'G21 G90\nG1 X100 F3000\n'
+  for (const how of [['--world', 'default', '--world-events', events], ['--input-at', '0.4:estop:1']]) {
+    const { run } = stoppedBy(text, stop, reaction, ...how)
+    const [mark] = run.surroundings.marks
+    assert.deepEqual([mark.name, mark.reaction, mark.line], ['EMERGENCY_STOP', 'ramp', 2])
+    assert.ok(Math.abs(run.seconds(mark.cycle) - 0.4) < 0.001, `${run.seconds(mark.cycle)} s`)
+    const lane = run.surroundings.lanes.find(({ input }) => input === 32)
+    // The world's button bounces three times, the script's does not.
+    assert.deepEqual([lane.begin, ...lane.states], how[0] === '--world' ? [0, 1, 0, 1, 0, 1, 0, 1] : [0, 1])
+    assert.ok(Math.abs(run.seconds(lane.times[0]) - 0.4) < 0.001)
+    // The axis goes on on its ramp.
+    assert.ok(run.coordinateAt(0, run.cycles) > mark.place[0] + 0.5)
+  }
+})
+
+test('the feed hold button holds, and cycle start goes on', () => {
+  const events = join(folder, 'events.txt')
+  writeFileSync(events, ['at 400 ms press feed_hold', 'at 500 ms release feed_hold', 'at 900 ms press cycle_start', ''].join('\n'))
+  const page = join(folder, 'held.html')
+  trammel(command, 'run', programOf('G21 G90\nG1 X60 F3000\n'), '--engine', 'model', '--clock', '400000', '--report', page, ...roles,
+    '--world', 'default', '--world-events', events)
+  const { run } = readPage(page)
+  const [mark] = run.surroundings.marks
+  assert.deepEqual([mark.name, mark.reaction, mark.line], ['feed hold button', 'hold', 2])
+  const held = run.seconds(mark.cycle)
+  assert.ok(held > 0.4 && held < 0.412, `${held} s: filter, and a look each 5 ms`)
+  assert.ok(run.seconds(mark.until) > 0.9 && run.seconds(mark.until) < 0.912)
+  const lane = run.surroundings.lanes.find(({ name }) => name === 'feed hold')
+  // Three bounces a change.
+  assert.equal(lane.times.length, 2 * (1 + 2 * 3))
+  assert.equal(activeAt(lane, 0.45 * run.clockHz), 1)
+  assert.equal(run.surroundings.parted.length, 0)
+})
+
+test('where a weak motor loses steps, and how many', () => {
+  const world = join(folder, 'weak.toml'), json = join(folder, 'world.json'), page = join(folder, 'weak.html')
+  writeFileSync(world, '[axis.x]\ntorque = 0.045\n[axis.y]\n')
+  trammel(command, 'run', programOf('G21 G90\nG1 X1 Y10 F100\nG1 X30 F9000\n'), '--engine', 'model', '--clock', '400000',
+    '--world', world, '--json', json, '--report', page)
+  const { run } = readPage(page)
+  const end = JSON.parse(readFileSync(json, 'utf8')).world.axes[0]
+  assert.ok(end.lost !== 0)
+  const [x, y] = run.surroundings.apart
+  assert.deepEqual(run.surroundings.parted.map(({ letter }) => letter), ['X'])
+  assert.equal(x.lost, end.lost)
+  assert.ok(Math.abs(x.most_lost) >= Math.abs(x.lost))
+  // In the second line, not in the slow first one; and by the curve more than two full steps from there on.
+  const begun = run.surroundings.marks.find(({ parting }) => parting)
+  assert.equal(begun.line, 3)
+  assert.ok(Math.abs(run.surroundings.apartAt(0, begun.cycle - 0.02 * run.clockHz)) < 2 * 16 / 80)
+  const after = Math.abs(run.surroundings.apartAt(0, begun.cycle + 0.01 * run.clockHz))
+  assert.ok(after >= 2 * 16 / 80, `${after} mm`)
+  assert.ok(y.pulses.every((pulses) => Math.abs(pulses) < 2 * 16))
+  assert.ok(Math.abs(run.surroundings.apartAt(0, run.cycles) - (end.commanded - end.carriage) / 80) < 0.4)
 })

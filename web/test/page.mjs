@@ -1,5 +1,5 @@
 // A report's file read without a browser.
-import { execFileSync } from 'node:child_process'
+import { execFileSync, spawnSync } from 'node:child_process'
 import { readFileSync } from 'node:fs'
 import { inflateSync } from 'node:zlib'
 import { Run } from '../src/run.js'
@@ -19,4 +19,10 @@ export function readPage(file) {
 // Standard output and error, and the exit status 0.
 export function trammel(command, ...options) {
   return execFileSync(command, options, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28 })
+}
+// Of a run that is stopped: status 1, and what it says of it.
+export function trammelStops(command, ...options) {
+  const { status, stderr } = spawnSync(command, options, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] })
+  if (status !== 1) throw new Error(`status ${status}: ${stderr}`)
+  return stderr
 }

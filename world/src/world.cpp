@@ -70,6 +70,7 @@ void World::move() {
     one.contact.set(one.pressed_at(axes_[one.description.axis].carriage.position()), now_);
   }
   step_due_ = still ? UINT64_MAX : next_boundary();
+  if (watcher_ != nullptr) watcher_->moved(*this);
 }
 
 void World::watch(Axis& axis) {
@@ -114,6 +115,7 @@ void World::show_pins() {
     return contact.closed() == closed_level_;
   };
   std::uint32_t levels = 0;
+  const bool emergency_stop = emergency_stop_;
   for (Switch& one : switches_) levels |= std::uint32_t{level(one.contact)} << one.description.input;
   for (Button& button : buttons_) {
     const bool high = level(button.contact);
@@ -122,8 +124,10 @@ void World::show_pins() {
     else
       emergency_stop_ = button.contact.closed() != button.description.contact.normally_closed;
   }
+  const bool changed = levels != levels_ || emergency_stop_ != emergency_stop;
   levels_ = levels;
   contact_due_ = due;
+  if (changed && watcher_ != nullptr) watcher_->pins_changed(*this);
 }
 
 }  // namespace trammel::world

@@ -284,8 +284,9 @@ std::string ReportWriter::State::machine_json() const {
       settings.clock_hz, machine.axes.size(), machine.motion.max_override, window, clocks_before, list);
 }
 
-void ReportWriter::finish(const std::string& run) {
+void ReportWriter::finish(const std::string& run, bool stopped) {
   State& state = *state_;
+  if (stopped && state.under_way.size() > 1) state.under_way.resize(1);
   if (state.last && state.last->cycle != state.anchored) state.anchor(*state.last);
   state.map.flush([&](const TimeMap::Point& point) { state.keep(point); });
   state.clock.barrier();

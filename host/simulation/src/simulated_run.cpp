@@ -118,9 +118,26 @@ report::ReportWriter* SimulatedRun::report() { return instruments_->report.get()
 
 RunResult SimulatedRun::result(const run::Outcome& outcome) {
   Instruments& made = *instruments_;
-  RunResult result;
   made.recorder.finish();
   made.recorder.check(outcome.counted);
+  return gather(outcome);
+}
+
+RunResult SimulatedRun::stopped_result(std::uint64_t commands) {
+  Instruments& made = *instruments_;
+  made.recorder.finish();
+  run::Outcome outcome;
+  outcome.commands = commands;
+  outcome.counted = made.recorder.position();
+  for (std::size_t joint = 0; joint < outcome.counted.size(); ++joint) {
+    outcome.final_position.push_back(runner_.last_plan().start[joint] + outcome.counted[joint]);
+  }
+  return gather(outcome);
+}
+
+RunResult SimulatedRun::gather(const run::Outcome& outcome) {
+  Instruments& made = *instruments_;
+  RunResult result;
   made.judges.tell(result);
   tell(made.recorder, result);
   result.events = made.timeline.made();

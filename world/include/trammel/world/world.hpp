@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trammel/world/description.hpp"
+#include "trammel/world/watcher.hpp"
 
 namespace trammel::world {
 
@@ -30,6 +31,9 @@ class World {
   std::uint32_t clock_hz() const { return clock_hz_; }
   // Until this clock, which is later than now(), no pin changes, whatever pulses come. Pressing makes it earlier.
   std::uint64_t quiet_until() const;
+
+  // Told from now on, a copy's too: nullptr ends it. Not owned.
+  void set_watcher(Watcher* watcher) { watcher_ = watcher; }
 
   // The card's pins as they stand now; bit n: input n.
   std::uint32_t wired() const { return wired_; }    // inputs that something is wired to
@@ -116,6 +120,7 @@ class World {
   std::uint32_t levels_ = 0;
   bool emergency_stop_ = false;
   bool has_emergency_stop_ = false;
+  Watcher* watcher_ = nullptr;
 };
 
 }  // namespace trammel::world

@@ -38,8 +38,9 @@ class ReportWriter final : public driver::StepSink, public run::Observer {
   void pin_step(const driver::PinStep& step) override;
   void path_step(const driver::PathStep& step) override;
 
-  // After the last step. `run`: what the summary says of the run, as JSON.
-  void finish(const std::string& run);
+  // After the last step. `run`: what the summary says of the run, as JSON. `stopped`: the run did not come to its end;
+  // paths behind that of its last step were sent and never begun, and are not in the page.
+  void finish(const std::string& run, bool stopped = false);
 
  private:
   class State;

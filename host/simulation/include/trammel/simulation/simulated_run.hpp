@@ -100,9 +100,13 @@ class SimulatedRun {
   // Once, after the run: the card is gone then, and its waveform whole. Throws std::runtime_error when the card did not
   // end where the program says.
   RunResult result(const run::Outcome& outcome);
+  // In place of it, of a run that a run::RunError has ended, with the card at rest: what was made by then. `commands`:
+  // sent.
+  RunResult stopped_result(std::uint64_t commands);
 
  private:
   struct Instruments;  // the card and what listens to it
+  RunResult gather(const run::Outcome& outcome);
 
   run::ProgramLines lines_;
   const machine::Machine& machine_;

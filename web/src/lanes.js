@@ -1,0 +1,126 @@
+// The card's inputs as a strip: a lane each, filled while it is active, an edge where it changes; and above them the
+// names of what has held or stopped the run.
+import { make } from './dom.js'
+import { colour } from './theme.js'
+import { alpha } from './charts.js'
+import { fixed } from './format.js'
+import { lastAtMost } from './run.js'
+import { activeAt, placeText } from './surroundings.js'
+
+const kLane = 16    // pixels, as a line of the label beside it
+const kNames = 24   // above the first lane, as the title beside it
+const kFont = '11px system-ui, "Noto Sans", "DejaVu Sans", sans-serif'
+
+export class Lanes {
+  constructor(run) {
+    this.run = run
+    const { lanes } = run.surroundings
+    // Those that change; of a run in which none does all of them.
+    const moving = lanes.filter(({ times }) => times.length > 0)
+    this.lanes = moving.length ? moving : lanes
+    this.values = this.lanes.map(() => make('b'))
+    this.canvas = make('canvas')
+    const still = lanes.length - this.lanes.length
+    this.element = make('div', { class: 'row', id: 'row-inputs' },
+      make('div', { class: 'label' },
+        make('h3', {}, 'Inputs ', make('small', {}, still ? `${still} more do not change` : 'by role')),
+        ...this.lanes.map((lane, i) => make('div', { title: `${lane.name} (${lane.detail})` }, make('span', { class: 'name' }, lane.name), this.values[i]))),
+      make('div', { class: 'plot' }, this.canvas))
+    this.height = kNames + kLane * this.lanes.length + 5
+  }
+  build(width) {
+    const ratio = window.devicePixelRatio || 1
+    this.width = width
+    this.canvas.width = Math.round(width * ratio)
+    this.canvas.height = Math.round(this.height * ratio)
+    this.canvas.style.width = `${width}px`
+    this.canvas.style.height = `${this.height}px`
+  }
+  read(cycle) {
+    this.lanes.forEach((lane, i) => { this.values[i].textContent = activeAt(lane, cycle) ? 'active' : '–' })
+  }
+  // From and to: card clocks. The plot begins `left` pixels from the canvas's edge.
+  draw(from, to, left) {
+    const context = this.canvas.getContext('2d')
+    const ratio = this.canvas.width / this.width
+    context.setTransform(ratio, 0, 0, ratio, 0, 0)
+    context.clearRect(0, 0, this.width, this.height)
+    this.view = { from, to, left, x: (cycle) => left + (cycle - from) / (to - from) * (this.width - left) }
+    context.save()
+    context.beginPath()
+    context.rect(left, 0, this.width - left, this.height)
+    context.clip()
+    this.lanes.forEach((lane, i) => this.drawLane(context, lane, kNames + kLane * i + 2, kLane - 5))
+    context.restore()
+    this.drawMarks(context)
+  }
+  drawLane(context, lane, top, height) {
+    const { from, to, left, x } = this.view
+    const first = lastAtMost(lane.times, from)
+    context.fillStyle = colour('grid')
+    context.fillRect(left, top + height - 1, this.width - left, 1)
+    let since = left, active = first < 0 ? lane.begin : lane.states[first]
+    const fill = (end) => {
+      if (!active) return
+      context.fillStyle = alpha(colour('achieved'), 0.55)
+      context.fillRect(since, top, Math.max(1, end - since), height)
+    }
+    for (let i = first + 1; i < lane.times.length && lane.times[i] <= to; ++i) {
+      const at = x(lane.times[i])
+      fill(at)
+      since = at
+      active = lane.states[i]
+      context.fillStyle = colour('ink')
+      context.fillRect(at - 0.5, top, 1, height)
+    }
+    fill(this.width)
+  }
+  // As much of a name as there is room for: beside its mark, and not over another.
+  drawMarks(context) {
+    const { from, to, left, x } = this.view
+    context.font = kFont
+    context.textBaseline = 'middle'
+    context.textAlign = 'left'
+    const taken = []
+    this.named = []
+    for (const mark of this.run.surroundings.marks) {
+      if (mark.cycle < from || mark.cycle > to) continue
+      const at = x(mark.cycle)
+      drawMark(context, mark, at, 0, this.height)
+      for (const text of textsOf(this.run, mark)) {
+        const width = context.measureText(text).width
+        const place = [at + 5, at - 5 - width].find((begin) => begin >= left && begin + width <= this.width &&
+          taken.every(([a, b]) => begin + width + 8 < a || begin > b + 8))
+        if (place === undefined) continue
+        taken.push([place, place + width])
+        context.fillStyle = markColour(mark)
+        context.fillText(text, place, kNames / 2)
+        this.named.push(text)
+        break
+      }
+    }
+  }
+}
+
+export const markColour = (mark) => colour(mark.parting ? 'e' : 'cursor')
+
+// A line in a chart where something has held or stopped the run.
+export function drawMark(context, mark, at, top, height) {
+  context.save()
+  context.strokeStyle = markColour(mark)
+  context.lineWidth = 1.2
+  context.setLineDash([4, 3])
+  context.beginPath()
+  context.moveTo(at, top)
+  context.lineTo(at, top + height)
+  context.stroke()
+  context.restore()
+}
+
+// All that is to be said of it, and less.
+export function textsOf(run, mark) {
+  const { name, reaction, cycle, line, place } = mark
+  const what = reaction && reaction !== name ? `${name}: ${reaction}` : name
+  const when = `${fixed(run.seconds(cycle), 4)} s`
+  return [`${what} · ${when} · ${placeText(run, place)} mm · line ${line}`, `${what} · ${when}`, what, name]
+}
