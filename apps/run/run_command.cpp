@@ -405,8 +405,8 @@ void run_in_simulation(const RunArguments& options) {
   tell_of_engine(engine, axes, plan.seconds);
   run.make_card(engine);
   PageListeners listeners(files, run, world.get());
-  const Simulation simulation{options, machine, run::planned_profile(machine, settings.settings), run, world.get(),
-                              files};
+  const Simulation simulation{options, machine,     run::planned_profile(machine, settings.settings),
+                              run,     world.get(), files};
   const run::Outcome outcome = stream_to_simulation(simulation, engine, plan.seconds, listeners);
   write_results(simulation, listeners, run.result(outcome));
 }

@@ -125,7 +125,9 @@ class Lanes {
       const bool level = contact == nullptr ? !active : level_at_begin(input);
       const std::string own = input == kEmergencyStop ? "emergency stop" : fmt::format("input {}", input);
       list.push_back({{"input", input},
-                      {"name", !role.empty() ? role : !wired.empty() ? wired : own},
+                      {"name", !role.empty()    ? role
+                               : !wired.empty() ? wired
+                                                : own},
                       {"detail", wired.empty() ? own : fmt::format("{}, {}", own, wired)},
                       {"level", level ? 1 : 0},
                       {"active", active ? 1 : 0}});
@@ -140,8 +142,8 @@ class Lanes {
     for (unsigned number = 0; number < machine_.inputs.roles.size(); ++number) {
       if ((machine_.inputs.roles[number].inputs >> input & 1U) == 0) continue;
       list.push_back(number < driver::kAxisRoles * 8
-                          ? role_text({static_cast<driver::AxisRole>(number / 8), number % 8}, machine_)
-                          : role_text(static_cast<driver::CardRole>(number), machine_));
+                         ? role_text({static_cast<driver::AxisRole>(number / 8), number % 8}, machine_)
+                         : role_text(static_cast<driver::CardRole>(number), machine_));
     }
     if (machine_.probe.input == input) list.emplace_back("probe");
     return fmt::format("{}", fmt::join(list, ", "));

@@ -92,7 +92,7 @@ TEST(Surroundings, ALongRunKeepsFewOfAllDifferences) {
   Surroundings out(page, kClockHz, {4}, 0);
   constexpr unsigned kSeconds = 20;
   for (std::uint64_t clock = 0; clock < kSeconds * std::uint64_t{kClockHz}; clock += 20) {
-    out.apart(clock, 0, (clock / 20 % 7) * (clock / 60 % 2 == 0 ? 40.0 : -40.0));
+    out.apart(clock, 0, static_cast<double>(clock / 20 % 7) * (clock / 60 % 2 == 0 ? 40.0 : -40.0));
   }
   out.finish();
   EXPECT_LE(kept(page.all, "apart-0").size(), kSeconds * Surroundings::kBlocks + 1);

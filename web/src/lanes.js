@@ -8,7 +8,8 @@ import { lastAtMost } from './run.js'
 import { activeAt, placeText } from './surroundings.js'
 
 const kLane = 16    // pixels, as a line of the label beside it
-const kNames = 24   // above the first lane, as the title beside it
+const kTitle = 24   // above the first lane, as the title beside it: a line of names
+const kMore = 15    // and a second line, of a run with several
 const kFont = '11px system-ui, "Noto Sans", "DejaVu Sans", sans-serif'
 
 export class Lanes {
@@ -26,7 +27,10 @@ export class Lanes {
         make('h3', {}, 'Inputs ', make('small', {}, still ? `${still} more do not change` : 'by role')),
         ...this.lanes.map((lane, i) => make('div', { title: `${lane.name} (${lane.detail})` }, make('span', { class: 'name' }, lane.name), this.values[i]))),
       make('div', { class: 'plot' }, this.canvas))
-    this.height = kNames + kLane * this.lanes.length + 5
+    this.rows = run.surroundings.marks.length > 1 ? 2 : 1
+    this.names = kTitle + (this.rows - 1) * kMore
+    this.element.querySelector('h3').style.marginBottom = `${2 + (this.rows - 1) * kMore}px`
+    this.height = this.names + kLane * this.lanes.length + 5
   }
   build(width) {
     const ratio = window.devicePixelRatio || 1
@@ -50,7 +54,7 @@ export class Lanes {
     context.beginPath()
     context.rect(left, 0, this.width - left, this.height)
     context.clip()
-    this.lanes.forEach((lane, i) => this.drawLane(context, lane, kNames + kLane * i + 2, kLane - 5))
+    this.lanes.forEach((lane, i) => this.drawLane(context, lane, this.names + kLane * i + 2, kLane - 5))
     context.restore()
     this.drawMarks(context)
   }
@@ -75,30 +79,32 @@ export class Lanes {
     }
     fill(this.width)
   }
-  // As much of a name as there is room for: beside its mark, and not over another.
+  // Each name beside its mark, and not over another; then as much more of it as there is room for.
   drawMarks(context) {
     const { from, to, left, x } = this.view
     context.font = kFont
     context.textBaseline = 'middle'
     context.textAlign = 'left'
-    const taken = []
-    this.named = []
-    for (const mark of this.run.surroundings.marks) {
-      if (mark.cycle < from || mark.cycle > to) continue
-      const at = x(mark.cycle)
-      drawMark(context, mark, at, 0, this.height)
-      for (const text of textsOf(this.run, mark)) {
-        const width = context.measureText(text).width
-        const place = [at + 5, at - 5 - width].find((begin) => begin >= left && begin + width <= this.width &&
-          taken.every(([a, b]) => begin + width + 8 < a || begin > b + 8))
-        if (place === undefined) continue
-        taken.push([place, place + width])
-        context.fillStyle = markColour(mark)
-        context.fillText(text, place, kNames / 2)
-        this.named.push(text)
-        break
+    const marks = this.run.surroundings.marks.filter(({ cycle }) => cycle >= from && cycle <= to).map((mark) => ({ mark, at: x(mark.cycle) }))
+    const write = (one, text) => {
+      const width = context.measureText(text).width
+      const free = (begin) => begin >= left && begin + width <= this.width &&
+        marks.every((other) => other === one || other.row !== row || begin + width + 8 < other.box[0] || begin > other.box[1] + 8)
+      let row = one.row ?? 0
+      for (; row < this.rows; ++row) {
+        const begin = [one.at + 5, one.at - 5 - width].find(free)
+        if (begin !== undefined) return Object.assign(one, { text, row, box: [begin, begin + width] })
       }
     }
+    const texts = marks.map(({ mark }) => textsOf(this.run, mark))
+    for (let size = 0; size < kSizes; ++size) marks.forEach((one, i) => write(one, texts[i][size]))
+    for (const { mark, at } of marks) drawMark(context, mark, at, 0, this.height)
+    for (const { mark, text, row, box } of marks) {
+      if (!text) continue
+      context.fillStyle = markColour(mark)
+      context.fillText(text, box[0], kTitle / 2 + row * kMore)
+    }
+    this.named = marks.filter(({ text }) => text).map(({ text }) => text)
   }
 }
 
@@ -117,10 +123,11 @@ export function drawMark(context, mark, at, top, height) {
   context.restore()
 }
 
-// All that is to be said of it, and less.
-export function textsOf(run, mark) {
+// Little to be said of it, and more; kSizes of them.
+const kSizes = 4
+function textsOf(run, mark) {
   const { name, reaction, cycle, line, place } = mark
   const what = reaction && reaction !== name ? `${name}: ${reaction}` : name
   const when = `${fixed(run.seconds(cycle), 4)} s`
-  return [`${what} · ${when} · ${placeText(run, place)} mm · line ${line}`, `${what} · ${when}`, what, name]
+  return [name, what, `${what} · ${when}`, `${what} · ${when} · ${placeText(run, place)} mm · line ${line}`]
 }

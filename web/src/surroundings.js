@@ -70,9 +70,9 @@ export class Surroundings {
     const at = (cycle) => run.axes.map((_, a) => run.coordinateAt(a, cycle))
     const lineAt = (cycle) => run.paths.count ? run.paths.lines[run.pathAt(cycle)] : 0
     const holds = run.facts.events.filter(({ event }) => event === 'hold')
-      .map(({ cycle }) => ({ name: 'hold', reaction: 'hold', cycle, line: lineAt(cycle) }))
+      .map(({ cycle }) => ({ name: 'hold', reaction: 'hold', cycle, line: lineAt(cycle), operator: true }))
     const parting = this.parted.map(({ letter, began }) => ({
-      name: `${letter}: pulses and carriage part`, reaction: '', cycle: began, line: lineAt(began), parting: true,
+      name: `${letter} loses steps`, reaction: '', cycle: began, line: lineAt(began), parting: true,
     }))
     const place = ({ position, cycle }) => position
       ? run.axes.map((_, a) => run.kinematics.coordinate(a, (motor) => position[motor])) : at(cycle)
@@ -85,13 +85,16 @@ export class Surroundings {
     const i = lastAtMost(times, cycle)
     return i < 0 ? 0 : pulses[i] / scale
   }
-  // Whether anything of it is worth a row from the start.
-  get busy() { return this.marks.length > 0 || this.lanes.some(({ times }) => times.length > 0) }
+  // Whether anything of it is worth a row from the start: a hold of the operator's script shows in the override.
+  get busy() { return this.marks.some(({ operator }) => !operator) || this.lanes.some(({ times }) => times.length > 0) }
 }
 
 export const activeAt = (lane, cycle) => {
   const i = lastAtMost(lane.times, cycle)
   return i < 0 ? lane.begin : lane.states[i]
 }
-// X 300.013 Y 0.000
-export const placeText = (run, place) => run.axes.map(({ letter }, a) => `${letter} ${fixed(place[a], 3)}`).join(' ')
+// X 300.013 Y 0.000: of the axes that move in the run.
+export function placeText(run, place) {
+  const moves = (axis) => run.kinematics.inverse[axis].some(({ motor }) => run.steps[motor].count > 0 || run.motors[motor].beside > 0)
+  return run.axes.flatMap(({ letter }, a) => moves(a) ? [`${letter} ${fixed(place[a], 3)}`] : []).join(' ')
+}

@@ -132,7 +132,11 @@ RunResult SimulatedRun::stopped_result(std::uint64_t commands) {
   for (std::size_t joint = 0; joint < outcome.counted.size(); ++joint) {
     outcome.final_position.push_back(runner_.last_plan().start[joint] + outcome.counted[joint]);
   }
-  return gather(outcome);
+  RunResult result = gather(outcome);
+  // Means over what was sent, which is more than what was made.
+  result.commanded_feed.reset();
+  result.achieved_feed.reset();
+  return result;
 }
 
 RunResult SimulatedRun::gather(const run::Outcome& outcome) {
