@@ -10,8 +10,8 @@ NB_MODULE(_trammel, m) {
   m.attr("__version__") = TRAMMEL_VERSION;
   bind_errors(m);
   bind_card_values(m);
-  bind_card(m);
   bind_commands(m);
+  bind_card(m);
   bind_stream(m);
   bind_position_stream(m);
   bind_world(m);

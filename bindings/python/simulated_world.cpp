@@ -1,0 +1,78 @@
+// A simulated card in a world of this process, with the terms of ServedWorld.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+
+#include <optional>
+#include <string>
+
+#include "card.hpp"
+#include "trammel/bindings/simulated_machine.hpp"
+#include "waiting.hpp"
+
+namespace trammel::python {
+namespace {
+
+struct PythonWorld {
+  std::unique_ptr<bindings::SimulatedMachine> machine;
+};
+
+using Switch = std::string (bindings::SimulatedMachine::*)(const std::string&, const std::string&, nanoseconds);
+using When = std::optional<std::string>;
+
+std::unique_ptr<PythonCard> simulate_in_world(const std::optional<std::string>& file, unsigned axes,
+                                              std::uint32_t clock_hz) {
+  const auto world = std::make_shared<bindings::CardInWorld>(file.value_or(""), axes, clock_hz);
+  auto card = std::make_unique<PythonCard>(std::shared_ptr<driver::Bus>(world, &world->engine()), &world->engine());
+  card->world = world;
+  return card;
+}
+
+PythonWorld world_of(const PythonCard& of) {
+  if (!of.world) throw driver::StateError("no machine is simulated behind this card: simulate_in_world() makes one");
+  return {bindings::machine_of(of.world)};
+}
+
+nb::object dict_of(const std::string& state) { return nb::module_::import_("json").attr("loads")(state); }
+
+nb::object switch_button(PythonWorld& of, Switch which, const std::string& button, const When& when,
+                         std::int64_t longest_ns) {
+  if (longest_ns < 1) throw driver::ArgumentError("longest_ns is 1 or more");
+  return dict_of(
+      without_lock([&] { return (of.machine.get()->*which)(button, when.value_or(""), nanoseconds(longest_ns)); }));
+}
+
+constexpr std::int64_t kLongest = 60'000'000'000;
+
+}  // namespace
+
+void bind_simulated_world(nb::module_& m, nb::class_<PythonCard>& card) {
+  using bindings::SimulatedMachine;
+  nb::class_<PythonWorld>(m, "SimulatedWorld",
+                          "The machine behind a card of simulate_in_world(): what it is like, and its buttons, in the "
+                          "terms of ServedWorld; nobody counts the path. For the card's thread.")
+      .def(
+          "state", [](PythonWorld& of) { return dict_of(of.machine->read()); },
+          "Carriages (mm and pulses), switches, buttons, levels of the pins.")
+      .def(
+          "press",
+          [](PythonWorld& of, const std::string& button, const When& when, std::int64_t longest_ns) {
+            return switch_button(of, &SimulatedMachine::press, button, when, longest_ns);
+          },
+          "button"_a, nb::kw_only(), "when"_a = nb::none(), "longest_ns"_a = kLongest,
+          "Presses a button, and gives the state 20 ms of the card's time later. when: 'X > 40' (mm of a carriage), "
+          "which is waited for while the card's time passes; TimeoutError, and nothing is pressed, where it has not "
+          "come within longest_ns of it.")
+      .def(
+          "release",
+          [](PythonWorld& of, const std::string& button, const When& when, std::int64_t longest_ns) {
+            return switch_button(of, &SimulatedMachine::release, button, when, longest_ns);
+          },
+          "button"_a, nb::kw_only(), "when"_a = nb::none(), "longest_ns"_a = kLongest, "As press().");
+  card.def_prop_ro("world", world_of, "Cards of simulate_in_world(): the machine behind the pins.");
+  m.def("simulate_in_world", simulate_in_world, "world_file"_a = nb::none(), "axes"_a = 4, "clock_hz"_a = 1'000'000,
+        "A simulated card with a machine behind its pins; None: the built-in one, which fits "
+        "examples/first-machine.toml.");
+}
+
+}  // namespace trammel::python
