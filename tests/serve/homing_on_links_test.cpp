@@ -207,7 +207,8 @@ TEST(HomingOnLinks, ALinkThatSpoilsFrames) {
   fmt::print("{} frames spoiled\n", tried.spoiled);
 }
 
-// On a ramp, since no commands come, and then its watchdog latches why; nothing counts as homed.
+// The way that was sent comes to its end, and then the watchdog latches that the host is silent. The axis does not count
+// as homed.
 void expect_stop_without_host(std::size_t axis, double millimetres) {
   CardInDefaultWorld here;
   LinkInCardTime link(here.engine, {86'806ns, 0ns, 0});
@@ -224,8 +225,8 @@ void expect_stop_without_host(std::size_t axis, double millimetres) {
   EXPECT_FALSE(end.status.stopping);
   const double beyond = std::abs(end.position[axis]) * kHomePulse - millimetres;
   fmt::print("cut in the search of axis {}: faults {:#x}, stands {:.2f} mm behind the cut\n", axis, end.faults, beyond);
-  EXPECT_GT(beyond, 0.1) << "it ramps";
-  EXPECT_LT(beyond, 10) << "before the switch: by want of commands";
+  EXPECT_GT(beyond, 0.1);
+  EXPECT_LT(beyond, 10) << "far before the switch";
   EXPECT_TRUE(card.read_rest().exact());
   const driver::CardPlace place = run::read_card_place(card);
   EXPECT_EQ(place.bits.homed & 1U << axis, 0U) << "axes of an earlier sequence may be";

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/kinematics/kinematics.hpp"
 #include "trammel/run/card_place.hpp"
 #include "trammel/run/configure.hpp"
@@ -76,7 +77,10 @@ std::vector<run::HomedAxis> home(driver::Card& card, const machine::Machine& mac
   const std::vector<std::size_t> axes = axes_of(letters, machine);
   require_motors(card, machine);
   const gcode::Coordinates at = run::standing_at(machine, place_in(card, machine));
-  if (card.read_status().held) throw driver::HeldError("home: the card holds: take it over, or end the hold");
+  // One that is still slowing down to it, too: nothing would move, and nothing would end the wait.
+  if (card.read_status().held || card.parts().time_base.hold()) {
+    throw driver::HeldError("home: the card holds: take it over, or end the hold");
+  }
   configure(card, machine);
   run::MachinePosition position(card.read_snapshot(), machine);
   for (std::size_t n = 0; n < machine.axes.size(); ++n) position.set(n, at[n]);
