@@ -147,7 +147,7 @@ TEST_F(HomingTest, ASwitchThatNeverComesEndsTheSearch) {
 }
 
 TEST_F(HomingTest, WhatHadComeHomeStaysHomedWhenALaterAxisFails) {
-  begin(homing_machine("homing.x.sequence=2"));
+  begin(homing_machine("homing.x.sequence=2;homing.x.search_distance=10"));
   bus_->add({2, 2, 400, 1});
   EXPECT_THAT(error_of({0, 2}), HasSubstr("X: "));
   EXPECT_EQ(card_->read_place().homed, 1U << 2);
