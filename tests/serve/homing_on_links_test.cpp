@@ -207,8 +207,8 @@ TEST(HomingOnLinks, ALinkThatSpoilsFrames) {
   fmt::print("{} frames spoiled\n", tried.spoiled);
 }
 
-// The way that was sent comes to its end, and then the watchdog latches that the host is silent. The axis does not count
-// as homed.
+// The way that was sent comes to its end, and then the watchdog latches that the host is silent. The axis does not
+// count as homed.
 void expect_stop_without_host(std::size_t axis, double millimetres) {
   CardInDefaultWorld here;
   LinkInCardTime link(here.engine, {86'806ns, 0ns, 0});
