@@ -111,9 +111,9 @@ typedef struct trammel_home_options {
 // count as homed, stand at their final positions, and `homed` (may be null: room for TRAMMEL_MAX_AXES) has them, in
 // `count` (may be null). `options` may be null. A stream that was open ends.
 // TRAMMEL_HOMING, with axis, input and distance, where a switch is not found: of the axes that were to be homed those
-// of lower sequence numbers count as homed, no others, and the card stands. TRAMMEL_ARGUMENT for a machine file that does not fit the card, TRAMMEL_STATE for a place
-// in other scales, TRAMMEL_HELD for a card that holds, TRAMMEL_FAULT for a stop, TRAMMEL_STOPPED by
-// trammel_request_stop() and an interrupt.
+// of lower sequence numbers count as homed, no others, and the card stands. TRAMMEL_ARGUMENT for a machine file that
+// does not fit the card, TRAMMEL_STATE for a place in other scales, TRAMMEL_HELD for a card that holds, TRAMMEL_FAULT
+// for a stop, TRAMMEL_STOPPED by trammel_request_stop() and an interrupt.
 TRAMMEL_API trammel_result trammel_home(trammel_card* card, const trammel_machine* machine, const char* axes,
                                         const trammel_home_options* options, trammel_homed_axis* homed,
                                         uint32_t* count);
