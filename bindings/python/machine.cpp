@@ -86,7 +86,7 @@ void bind_machine_file(nb::module_& m, nb::class_<PythonCard>& card) {
       .def("home", waiting(home_axes), "machine"_a, "axes"_a = "", "say"_a = nb::none(),
            "Configures the card and homes axes ('XY'; '': all that have a [homing]): a HomedAxis each. say(text) is "
            "called for each thing that is done. Raises HomingError, with axis, input and distance, where a switch is "
-           "not found; the card then stands, and none of the axes counts as homed.")
+           "not found; the card then stands, and of the axes those of lower sequence numbers count as homed.")
       .def(
           "read_coordinates", waiting([](PythonCard& of, const PythonMachine& machine) {
             return bindings::read_coordinates(of.card, machine.machine);

@@ -207,8 +207,8 @@ TEST(HomingOnLinks, ALinkThatSpoilsFrames) {
   fmt::print("{} frames spoiled\n", tried.spoiled);
 }
 
-// The way that was sent comes to its end, and then the watchdog latches that the host is silent. The axis does not
-// count as homed.
+// On the ramp of an under-run hold, and then the watchdog latches that the host is silent. The axis does not count as
+// homed.
 void expect_stop_without_host(std::size_t axis, double millimetres) {
   CardInDefaultWorld here;
   LinkInCardTime link(here.engine, {86'806ns, 0ns, 0});
@@ -217,7 +217,15 @@ void expect_stop_without_host(std::size_t axis, double millimetres) {
   link.cut_when([&] { return std::abs(carriage.position()) > millimetres / kHomePulse; });
   EXPECT_THROW(home_all(bus), driver::LinkError);
   ASSERT_TRUE(here.engine.read(card_map::reg::kStatus) & field::kStatusBusy) << "it is searching";
+  // What was sent ends in an under-run hold, which is a ramp, long before the watchdog.
+  here.engine.sleep(500ms);
+  const std::uint32_t status = here.engine.read(card_map::reg::kStatus);
+  EXPECT_TRUE(status & field::kStatusUnderrun);
+  EXPECT_TRUE(status & field::kStatusHeld);
+  EXPECT_FALSE(status & field::kStatusFaulted);
+  const std::vector<std::int64_t> held_at = here.engine.positions();
   here.engine.sleep(6s);
+  EXPECT_EQ(here.engine.positions(), held_at);
   driver::Card card = driver::Card::open(here.engine);
   const driver::Snapshot end = card.read_snapshot();
   EXPECT_EQ(end.faults & field::kFaultWatchdog, field::kFaultWatchdog) << end.faults;

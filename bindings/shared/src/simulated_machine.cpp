@@ -38,15 +38,9 @@ class ServedMachine final : public SimulatedMachine {
   explicit ServedMachine(const std::string& url) : world_(transport::parse_card_url(url)) {}
 
   std::string read() override { return world_.request("state"); }
-  std::string press(const std::string& button, const std::string& when, nanoseconds longest) override {
-    return ask(request_of("press", button, when), longest);
-  }
-  std::string release(const std::string& button, const std::string& when, nanoseconds longest) override {
-    return ask(request_of("release", button, when), longest);
-  }
 
  private:
-  std::string ask(const std::string& request, nanoseconds longest) {
+  std::string make(const std::string& request, nanoseconds longest) override {
     return world_.request(request, std::chrono::ceil<std::chrono::milliseconds>(longest));
   }
 
@@ -58,15 +52,9 @@ class MachineHere final : public SimulatedMachine {
   explicit MachineHere(std::shared_ptr<CardInWorld> card) : card_(std::move(card)) {}
 
   std::string read() override { return world::state_json(card_->world()); }
-  std::string press(const std::string& button, const std::string& when, nanoseconds longest) override {
-    return make(request_of("press", button, when), longest);
-  }
-  std::string release(const std::string& button, const std::string& when, nanoseconds longest) override {
-    return make(request_of("release", button, when), longest);
-  }
 
  private:
-  std::string make(const std::string& text, nanoseconds longest) {
+  std::string make(const std::string& text, nanoseconds longest) override {
     world::World& world = card_->world();
     const world::Request request = world::parse_request(text, world);
     if (request.when && !request.when->axis) {
@@ -110,6 +98,13 @@ world::World make_world(const std::string& file, std::uint32_t clock_hz) {
 }
 
 }  // namespace
+
+std::string SimulatedMachine::press(const std::string& button, const std::string& when, nanoseconds longest) {
+  return make(request_of("press", button, when), longest);
+}
+std::string SimulatedMachine::release(const std::string& button, const std::string& when, nanoseconds longest) {
+  return make(request_of("release", button, when), longest);
+}
 
 CardInWorld::CardInWorld(const std::string& world_file, unsigned axes, std::uint32_t clock_hz)
     : world_(make_world(world_file, clock_hz)),

@@ -53,8 +53,12 @@ class SimulatedMachine {
   // is not there; driver::InterruptedError by an InterruptScope. A condition that has not come within `longest` is
   // forgotten: driver::TimeoutError (card time) here, driver::LinkError (real time) at a server, whose object is then
   // of no use.
-  virtual std::string press(const std::string& button, const std::string& when, std::chrono::nanoseconds longest) = 0;
-  virtual std::string release(const std::string& button, const std::string& when, std::chrono::nanoseconds longest) = 0;
+  std::string press(const std::string& button, const std::string& when, std::chrono::nanoseconds longest);
+  std::string release(const std::string& button, const std::string& when, std::chrono::nanoseconds longest);
+
+ private:
+  // "press estop when X > 40", as a server takes it.
+  virtual std::string make(const std::string& request, std::chrono::nanoseconds longest) = 0;
 };
 
 // At the machine of a served card. Throws as transport::ServedWorld.
