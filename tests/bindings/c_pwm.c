@@ -26,6 +26,54 @@ static void a_duty_in_the_stream(void) {
   trammel_close(card);
 }
 
+// A bus that notes the words of the stream.
+typedef struct noting_bus {
+  trammel_card* behind;
+  uint32_t words[64];
+  size_t count;
+} noting_bus;
+
+static size_t note_and_transfer(void* context, trammel_access* accesses, size_t count) {
+  const uint32_t stream = 0x610;
+  noting_bus* bus = (noting_bus*)context;
+  size_t made = 0;
+  size_t i;
+  DONE(trammel_transfer(bus->behind, accesses, count, &made));
+  for (i = 0; i < made; ++i) {
+    if (accesses[i].write && accesses[i].address == stream && bus->count < 64)
+      bus->words[bus->count++] = accesses[i].data;
+  }
+  return made;
+}
+
+// Its last three halfwords, as docs/reference/commands.md of the project has them: select, duty, gain.
+static void a_duty_in_words(void) {
+  noting_bus is;
+  trammel_bus bus;
+  trammel_card* card = NULL;
+  trammel_command duty = command_of(TRAMMEL_PWM);
+  memset(&is, 0, sizeof is);
+  memset(&bus, 0, sizeof bus);
+  is.behind = simulated_card();
+  bus.context = &is;
+  bus.transfer = note_and_transfer;
+  bus.reports_refusals = true;
+  DONE(trammel_open_bus(&bus, &card));
+  DONE(trammel_open_stream(card, NULL));
+  duty.as.pwm.channel = 1;
+  duty.as.pwm.duty = 0x1234;
+  duty.as.pwm.follows = true;
+  duty.as.pwm.shift = 21;
+  duty.as.pwm.gain = 0xABCD;
+  DONE(trammel_put(card, &duty));
+  DONE(trammel_flush(card));
+  CHECK(is.count == 4);
+  CHECK(is.words[2] >> 16 == (1U | 1U << 4 | 21U << 8));
+  CHECK(is.words[3] == (0x1234 | 0xABCDU << 16));
+  trammel_close(card);
+  trammel_close(is.behind);
+}
+
 static void with_the_speed(void) {
   trammel_pwm_command command;
   memset(&command, 0xFF, sizeof command);
@@ -56,6 +104,7 @@ static void bad_pwm(void) {
 
 void test_pwm(void) {
   a_duty_in_the_stream();
+  a_duty_in_words();
   with_the_speed();
   bad_pwm();
 }
