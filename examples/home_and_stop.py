@@ -2,7 +2,7 @@
 
     PYTHONPATH=build/release/python .venv/bin/python examples/home_and_stop.py
 
-With `trammel serve --world default`, card = trammel.open(URL) and world = trammel.ServedWorld(URL) do the same at its card.
+With `trammel serve --world default`, `card = trammel.open(URL)` and `world = trammel.open_world(URL)` do the same there.
 """
 import pathlib
 

@@ -127,7 +127,7 @@ void bind_card(nb::module_& m) {
   bind_guards(m, card);
   bind_place(m, card);
   bind_pwm(m, card);
-  bind_simulated_world(m, card);
+  bind_world(m, card);
   bind_machine_file(m, card);
   bind_simulation(card);
   m.def("open", waiting(open_card), "url"_a,

@@ -14,6 +14,5 @@ NB_MODULE(_trammel, m) {
   bind_card(m);
   bind_stream(m);
   bind_position_stream(m);
-  bind_world(m);
   bind_interpolation(m.def_submodule("interpolation", "The interpolators of both papers and their rivals."));
 }

@@ -38,6 +38,7 @@ class ServedMachine final : public SimulatedMachine {
   explicit ServedMachine(const std::string& url) : world_(transport::parse_card_url(url)) {}
 
   std::string read() override { return world_.request("state"); }
+  std::string count() override { return world_.request("count"); }
 
  private:
   std::string make(const std::string& request, nanoseconds longest) override {
@@ -52,6 +53,7 @@ class MachineHere final : public SimulatedMachine {
   explicit MachineHere(std::shared_ptr<CardInWorld> card) : card_(std::move(card)) {}
 
   std::string read() override { return world::state_json(card_->world()); }
+  std::string count() override { throw driver::StateError("steps of the path are counted at served cards alone"); }
 
  private:
   std::string make(const std::string& text, nanoseconds longest) override {

@@ -48,6 +48,9 @@ class SimulatedMachine {
   virtual ~SimulatedMachine() = default;
   // A line of JSON, as world::state_json() writes it.
   virtual std::string read() = 0;
+  // The path's steps and their identity are counted anew from here. Throws driver::StateError where nobody counts them:
+  // for a card in this process.
+  virtual std::string count() = 0;
   // Presses or releases a button, at once or when a condition has come ("X > 40": mm of a carriage, as the state has
   // it), and waits for 20 ms of the card's time. Throws driver::ArgumentError, with the names that there are, for what
   // is not there; driver::InterruptedError by an InterruptScope. A condition that has not come within `longest` is
