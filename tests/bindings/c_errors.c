@@ -334,6 +334,7 @@ static void null_cards(void) {
   NO_CARD(trammel_recover_positions(NULL, &stop));
   NO_CARD(trammel_finish_positions(NULL, positions));
   NO_CARD(trammel_simulated_listen(NULL, NULL, NULL));
+  NO_CARD(trammel_simulated_listen_to_outputs(NULL, NULL, NULL));
   NO_CARD(trammel_simulated_wait(NULL, 1));
   NO_CARD(trammel_simulated_set_inputs(NULL, 0));
   NO_CARD(trammel_simulated_set_input(NULL, 0, true));

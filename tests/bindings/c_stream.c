@@ -268,7 +268,76 @@ static void refusals(void) {
   trammel_close(card);
 }
 
+// A line up to a speed and down to rest, an output switched in its middle: the listener gets each change.
+typedef struct changes {
+  trammel_output_change change[4];
+  unsigned count;
+} changes;
+
+static void note_change(void* context, const trammel_output_change* change) {
+  changes* noted = (changes*)context;
+  if (noted->count < 4) noted->change[noted->count] = *change;
+  ++noted->count;
+}
+
+static void put_ramp(trammel_card* card, double speed, double end_speed) {
+  trammel_ramp ramp;
+  trammel_command feed = command_of(TRAMMEL_FEED);
+  memset(&ramp, 0, sizeof ramp);
+  ramp.ticks = 1000;
+  ramp.speed = speed;
+  ramp.end_speed = end_speed;
+  ramp.highest_speed = speed > end_speed ? speed : end_speed;
+  ramp.slew_time_ns = 10000000;
+  DONE(trammel_feed_for_ramp(&ramp, 1000000, &feed.as.feed));
+  CHECK(feed.as.feed.ticks == 1000 && feed.as.feed.jerk == 0 && feed.as.feed.floor > 0);
+  CHECK((feed.as.feed.acceleration > 0) == (end_speed > speed));
+  CHECK(feed.as.feed.stop_distance == (end_speed == 0 ? 0 : 100));
+  DONE(trammel_put(card, &feed));
+}
+
+static void ramps_and_outputs(void) {
+  trammel_card* card = simulated_card();
+  trammel_command line = line_of(1000, 100, 0);
+  trammel_command output = command_of(TRAMMEL_OUTPUT);
+  trammel_ramp ramp;
+  trammel_snapshot snapshot;
+  changes noted;
+  memset(&noted, 0, sizeof noted);
+  memset(&ramp, 0, sizeof ramp);
+  DONE(trammel_simulated_listen_to_outputs(card, note_change, &noted));
+  DONE(trammel_set_slew_time(card, 10000000));
+  DONE(trammel_open_stream(card, NULL));
+  put_ramp(card, 0, 20000);
+  DONE(trammel_put(card, &line));
+  output.as.output.set = 5;
+  DONE(trammel_put(card, &output));
+  put_ramp(card, 20000, 0);
+  DONE(trammel_put(card, &line));
+  output.as.output.set = 0;
+  output.as.output.clear = 4;
+  DONE(trammel_put(card, &output));
+  DONE(trammel_finish(card, NULL));
+  DONE(trammel_read_snapshot(card, &snapshot));
+  CHECK(snapshot.position[0] == 200);
+  CHECK(noted.count == 2);
+  CHECK(noted.change[0].changed == 5 && noted.change[0].levels == 5);
+  CHECK(noted.change[1].changed == 4 && noted.change[1].levels == 1);
+  // 1,000 ticks from 0 to 20,000 ticks/s and back: 100 ms each, less up to a tick at rest (2.3 ms).
+  CHECK(noted.change[1].cycle - noted.change[0].cycle > 97000 &&
+        noted.change[1].cycle - noted.change[0].cycle < 100100);
+  DONE(trammel_simulated_listen_to_outputs(card, NULL, NULL));
+  DONE(trammel_put(card, &output));
+  DONE(trammel_finish(card, NULL));
+  CHECK(noted.count == 2);
+  FAILS(trammel_feed_for_ramp(&ramp, 1000000, &line.as.feed), TRAMMEL_ARGUMENT, "ticks, not 0");
+  FAILS(trammel_feed_for_ramp(NULL, 1000000, &line.as.feed), TRAMMEL_ARGUMENT, "ramp is null");
+  FAILS(trammel_feed_for_ramp(&ramp, 1000000, NULL), TRAMMEL_ARGUMENT, "command is null");
+  trammel_close(card);
+}
+
 void test_stream(void) {
+  ramps_and_outputs();
   all_commands();
   probing();
   probe_on_the_way();

@@ -775,6 +775,25 @@ typedef struct trammel_stream_options {
 TRAMMEL_API trammel_result trammel_pwm_for_speed(uint8_t channel, uint16_t duty, double rate, uint16_t most,
                                                  trammel_pwm_command* command);
 
+// A piece of feed from its speeds, for planners of the caller's own: constant acceleration from one to the other.
+// Speeds are feed ticks/s, 0 .. one per enabled clock.
+typedef struct trammel_ramp {
+  uint64_t ticks;    // of the piece, 1 .. 2^40 - 1
+  double speed;      // at its begin; 0: from rest
+  double end_speed;  // at its end; 0: the piece ends at rest
+  // For the under-run hold: the highest speed of this piece and of all that follow it up to the next rest. Where it is
+  // below both speeds, the higher of them counts.
+  double highest_speed;
+  int64_t slew_time_ns;  // of the card, as trammel_set_slew_time() got it; for pieces that do not end at rest
+} trammel_ramp;
+
+// `clock_hz`: enabled clocks per second at the caller's 100 %: the card's clock where that is the full ratio. A speed
+// near rest is raised to that of half a tick from it, sqrt(acceleration * 1 tick), since a slower tick would not come
+// in time. The class is TRAMMEL_CLASS_FEED. TRAMMEL_ARGUMENT for values out of range, two speeds of 0, and a stop that
+// would take more than 2^32 - 1 ticks. Needs no card; any thread.
+TRAMMEL_API trammel_result trammel_feed_for_ramp(const trammel_ramp* ramp, uint32_t clock_hz,
+                                                 trammel_feed_command* command);
+
 // Opens the card's stream, which must stand idle; one that was open ends. `options` may be null. TRAMMEL_HELD where the
 // card stands in a hold that this handle has not set.
 TRAMMEL_API trammel_result trammel_open_stream(trammel_card* card, const trammel_stream_options* options);
@@ -863,6 +882,18 @@ typedef struct trammel_step {
 TRAMMEL_API trammel_result trammel_simulated_listen(trammel_card* card,
                                                     void (*listener)(void* context, const trammel_step* step),
                                                     void* context);
+
+// Outputs that changed at their pins in one clock; bit n: output n.
+typedef struct trammel_output_change {
+  uint64_t cycle;    // clock since reset, in which they have their new levels
+  uint16_t changed;  //
+  uint16_t levels;   // of all outputs
+} trammel_output_change;
+
+// Called for each change while the card is used, behind the steps of the same clock. Must not use the card. Null: no
+// more.
+TRAMMEL_API trammel_result trammel_simulated_listen_to_outputs(
+    trammel_card* card, void (*listener)(void* context, const trammel_output_change* change), void* context);
 // Lets clocks pass.
 TRAMMEL_API trammel_result trammel_simulated_wait(trammel_card* card, uint64_t clocks);
 // Levels at the input pins from now on; bit n: input n. The simulated card has 16.

@@ -15,26 +15,40 @@
 #include "trammel/driver/stream.hpp"
 #include "trammel/sim/engine.hpp"
 
-// Steps of a simulated card on their way to the caller's listener.
+// Steps and changes of outputs of a simulated card on their way to the caller's listeners.
 class StepForwarder final : public trammel::driver::StepSink {
  public:
   using Listener = void (*)(void* context, const trammel_step* step);
+  using OutputListener = void (*)(void* context, const trammel_output_change* change);
   void listen(Listener listener, void* context) {
     listener_ = listener;
     context_ = context;
   }
+  void listen_to_outputs(OutputListener listener, void* context) {
+    output_listener_ = listener;
+    output_context_ = context;
+  }
+  bool has_listener() const { return listener_ != nullptr || output_listener_ != nullptr; }
   void pin_step(const trammel::driver::PinStep& step) override {
     forward({step.cycle, 0, 0, step.axis, step.direction, true});
   }
   void path_step(const trammel::driver::PathStep& step) override {
     forward({step.cycle, step.command, step.tick, step.axis, step.direction, false});
   }
+  void outputs_changed(const trammel::driver::OutputChange& change) override {
+    const trammel_output_change changed{change.cycle, change.changed, change.levels};
+    if (output_listener_ != nullptr) output_listener_(output_context_, &changed);
+  }
 
  private:
-  void forward(const trammel_step& step) { listener_(context_, &step); }
+  void forward(const trammel_step& step) {
+    if (listener_ != nullptr) listener_(context_, &step);
+  }
 
   Listener listener_ = nullptr;
   void* context_ = nullptr;
+  OutputListener output_listener_ = nullptr;
+  void* output_context_ = nullptr;
 };
 
 struct trammel_card {

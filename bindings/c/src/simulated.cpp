@@ -9,9 +9,15 @@ sim::Engine& engine_of(trammel_card* card) {
   return *engine;
 }
 
+// Without a listener the engine reports nothing, which is faster.
+void attach_steps(trammel_card& card, sim::Engine& engine) {
+  engine.set_sink(card.steps->has_listener() ? card.steps.get() : nullptr);
+}
+
 }  // namespace
 }  // namespace trammel::c
 
+using trammel::c::attach_steps;
 using trammel::c::engine_of;
 using trammel::c::guarded;
 
@@ -20,7 +26,17 @@ trammel_result trammel_simulated_listen(trammel_card* card, void (*listener)(voi
   return guarded([=] {
     trammel::sim::Engine& engine = engine_of(card);
     card->steps->listen(listener, context);
-    engine.set_sink(listener != nullptr ? card->steps.get() : nullptr);
+    attach_steps(*card, engine);
+  });
+}
+
+trammel_result trammel_simulated_listen_to_outputs(trammel_card* card,
+                                                   void (*listener)(void*, const trammel_output_change*),
+                                                   void* context) {
+  return guarded([=] {
+    trammel::sim::Engine& engine = engine_of(card);
+    card->steps->listen_to_outputs(listener, context);
+    attach_steps(*card, engine);
   });
 }
 

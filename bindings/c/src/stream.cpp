@@ -1,6 +1,7 @@
 #include <vector>
 
 #include "handle.hpp"
+#include "trammel/driver/feed_ramp.hpp"
 
 namespace trammel::c {
 namespace {
@@ -39,6 +40,23 @@ trammel_probe_outcome outcome_of(driver::ProbeOutcome outcome) {
 
 using namespace trammel::c;
 namespace driver = trammel::driver;
+
+trammel_result trammel_feed_for_ramp(const trammel_ramp* ramp, uint32_t clock_hz, trammel_feed_command* command) {
+  return guarded([=] {
+    const trammel_ramp& from = required(ramp, "ramp");
+    trammel_feed_command& to = required(command, "command");
+    const driver::FeedCommand made = driver::feed_for_ramp(
+        {from.ticks, from.speed, from.end_speed, from.highest_speed, std::chrono::nanoseconds(from.slew_time_ns)},
+        clock_hz);
+    to = {};
+    to.ticks = made.ticks;
+    to.rate = made.rate;
+    to.acceleration = made.acceleration;
+    to.floor = made.floor;
+    to.stop_distance = made.stop_distance;
+    to.piece_class = static_cast<int32_t>(made.piece_class);
+  });
+}
 
 trammel_result trammel_open_stream(trammel_card* card, const trammel_stream_options* options) {
   return guarded([=] {
