@@ -12,6 +12,8 @@ namespace trammel::driver {
 namespace {
 
 constexpr double kRampUpdate = card_map::constant::kUpdateClocks;
+// The card goes on at a piece's last rate for so many clocks after its last tick (the planner's kSwapClocks).
+constexpr double kRampSwap = 6;
 constexpr double kLeastRampRate = 0x1p-32;  // one unit of the floor's field
 
 double checked_rate(const char* name, double speed, std::uint32_t clock_hz) {
@@ -39,28 +41,29 @@ FeedCommand feed_for_ramp(const FeedRamp& ramp, std::uint32_t clock_hz) {
     throw ArgumentError(fmt::format("a piece has 1 to 2^40 - 1 ticks, not {}", ramp.ticks));
   }
   if (ramp.slew_time.count() < 0) throw ArgumentError("a slew time below 0");
-  double rate = checked_rate("speed", ramp.speed, clock_hz);
-  double end_rate = checked_rate("end_speed", ramp.end_speed, clock_hz);
+  const double rate = checked_rate("speed", ramp.speed, clock_hz);
+  const double end_rate = checked_rate("end_speed", ramp.end_speed, clock_hz);
   const double most = std::max(rate, end_rate);
   if (most == 0) throw ArgumentError("a piece from rest to rest has no speed: plan one up, and one down");
   const double highest_rate = std::max(most, checked_rate("highest_speed", ramp.highest_speed, clock_hz));
 
-  // Near rest: v^2 = 2 a s at half a tick.
   const auto ticks = static_cast<double>(ramp.ticks);
-  const double off_rest = std::min(most, std::sqrt(std::abs(end_rate - rate) * (end_rate + rate) / (2 * ticks)));
-  rate = std::max(rate, off_rest);
-  end_rate = std::max(end_rate, off_rest);
   const double acceleration = (end_rate - rate) * (end_rate + rate) / (2 * ticks);
   const double clocks = 2 * ticks / (rate + end_rate);
 
-  // The card holds each rate for an update: the first is the mean of the first update.
+  // The first ticks pass at the speed before. Then the card holds each rate for an update: its mean.
+  const double lead = std::min(ticks, kRampSwap * rate);
   const bool one_rate = clocks < kRampUpdate;
-  const double first = one_rate ? ticks / clocks : rate + kRampUpdate / 2 * acceleration;
+  const double behind = std::sqrt(std::max(0.0, rate * rate + 2 * acceleration * lead));
+  const double first = one_rate ? ticks / clocks : behind + kRampUpdate / 2 * acceleration;
   FeedCommand piece;
   piece.ticks = ramp.ticks;
   piece.rate = static_cast<std::uint64_t>(std::clamp(first, kLeastRampRate, 1 - 0x1p-53) * 0x1p64);
   piece.acceleration = one_rate ? 0 : static_cast<std::int64_t>(kRampUpdate * acceleration * 0x1p64);
-  piece.floor = static_cast<std::uint32_t>(std::clamp(std::min({rate, end_rate, first}), kLeastRampRate, 0.5) * 0x1p32);
+  // By v^2 = 2 a s a ramp to rest comes to sqrt(a) half a tick before it, and keeps that.
+  const double slowest = std::max(end_rate, std::min(rate, std::sqrt(std::abs(acceleration))));
+  const double floor = std::min(first, acceleration < 0 ? slowest : rate);
+  piece.floor = static_cast<std::uint32_t>(std::clamp(floor, kLeastRampRate, 0.5) * 0x1p32);
   piece.stop_distance = stop_distance(ramp, highest_rate, clock_hz);
   return piece;
 }

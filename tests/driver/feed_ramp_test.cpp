@@ -29,9 +29,9 @@ double clocks_to(const FeedRamp& ramp, double ticks) {
   return 2 * ticks / (ramp.speed + speed) * kRampHz;
 }
 
-// Clocks of a tick at the speed of half a tick from rest, for a ramp from or to rest.
+// Clocks of a tick at the speed of half a tick before rest.
 double tick_at_rest(const FeedRamp& ramp) {
-  return kRampHz / std::max(ramp.speed, ramp.end_speed) * std::sqrt(2 * static_cast<double>(ramp.ticks));
+  return kRampHz / ramp.speed * std::sqrt(2 * static_cast<double>(ramp.ticks));
 }
 
 // Clocks in which the ticks of the pieces come: a line with a pulse per tick shows each of them.
@@ -56,7 +56,8 @@ std::vector<std::uint64_t> ticks_of(const std::vector<FeedRamp>& ramps) {
   return cycles;
 }
 
-// From rest to a speed, on at it, to another speed, and to rest. Near rest a tick comes up to one such tick early.
+// From rest to a speed, on at it, to another speed, and to rest. The last tick comes early, by half of
+// the time that a tick takes there.
 TEST(FeedRamp, TicksComeAtTheirTimes) {
   std::mt19937_64 random(3);
   const auto between = [&random](double low, double high) {
@@ -71,20 +72,16 @@ TEST(FeedRamp, TicksComeAtTheirTimes) {
         ramp_of(400 + random() % 2000, 0, speed), ramp_of(1 + random() % 1000, speed, speed),
         ramp_of(400 + random() % 2000, speed, other), ramp_of(400 + random() % 2000, other, 0)};
     const std::vector<std::uint64_t> cycles = ticks_of(ramps);
-    const double bound = tick_at_rest(ramps.front()) + tick_at_rest(ramps.back());
     double begin = static_cast<double>(cycles[0]) - clocks_to(ramps[0], 1);
     std::size_t tick = 0;
     for (const FeedRamp& ramp : ramps) {
       for (std::uint64_t n = 1; n <= ramp.ticks; ++n, ++tick) {
         const double late = static_cast<double>(cycles[tick]) - begin - clocks_to(ramp, static_cast<double>(n));
-        ASSERT_LE(std::abs(late), bound) << "tick " << n << " of " << ramp.speed << " to " << ramp.end_speed;
+        ASSERT_LE(std::abs(late), ramp.end_speed == 0 ? 0.55 * tick_at_rest(ramp) : 4)
+            << "tick " << n << " of " << ramp.speed << " to " << ramp.end_speed;
       }
       begin += clocks_to(ramp, static_cast<double>(ramp.ticks));
     }
-    // The ramp between two speeds by itself: to a tick at its begin, of which the piece before has a part.
-    const std::uint64_t before = ramps[0].ticks + ramps[1].ticks - 1;
-    const auto took = static_cast<double>(cycles[before + ramps[2].ticks] - cycles[before]);
-    EXPECT_NEAR(took, clocks_to(ramps[2], static_cast<double>(ramps[2].ticks)), kRampHz / std::min(speed, other));
   }
 }
 

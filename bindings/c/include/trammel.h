@@ -787,10 +787,10 @@ typedef struct trammel_ramp {
   int64_t slew_time_ns;  // of the card, as trammel_set_slew_time() got it; for pieces that do not end at rest
 } trammel_ramp;
 
-// `clock_hz`: enabled clocks per second at the caller's 100 %: the card's clock where that is the full ratio. A speed
-// near rest is raised to that of half a tick from it, sqrt(acceleration * 1 tick), since a slower tick would not come
-// in time. The class is TRAMMEL_CLASS_FEED. TRAMMEL_ARGUMENT for values out of range, two speeds of 0, and a stop that
-// would take more than 2^32 - 1 ticks. Needs no card; any thread.
+// `clock_hz`: enabled clocks per second at the caller's 100 %: the card's clock where that is the full ratio. A ramp to
+// rest does not become slower than half a tick before it, r = sqrt(deceleration * 1 tick), since its last tick would
+// not come in time: that one comes early by 1 / (2 r). The class is TRAMMEL_CLASS_FEED. TRAMMEL_ARGUMENT for values out
+// of range, two speeds of 0, and a stop that would take more than 2^32 - 1 ticks. Needs no card; any thread.
 TRAMMEL_API trammel_result trammel_feed_for_ramp(const trammel_ramp* ramp, uint32_t clock_hz,
                                                  trammel_feed_command* command);
 

@@ -23,9 +23,10 @@ struct FeedRamp {
 
 // `clock_hz`: enabled clocks per second at the host's 100 %: the card's clock where that is the full ratio.
 //
-// A speed near rest is raised to that of half a tick from it, sqrt(acceleration * 1 tick), since a slower tick would
-// not come in time: a ramp from or to rest is shorter than planned by up to the time of a tick at that speed. A piece
-// of less than 32 clocks (an update of the card) has one rate, its mean. The class is kFeed.
+// Behind a piece that ends at the ramp's first speed, or at rest, ticks come at their times to a few clocks. A ramp to
+// rest does not become slower than half a tick before it, r = sqrt(deceleration * 1 tick), since its last tick would
+// not come in time: that one comes early by 1 / (2 r). A piece of less than 32 clocks (an update of the card) has one
+// rate, its mean. The class is kFeed.
 //
 // Throws ArgumentError for values out of range, two speeds of 0, and a stop distance beyond 2^32 - 1 ticks.
 FeedCommand feed_for_ramp(const FeedRamp& ramp, std::uint32_t clock_hz);
