@@ -38,6 +38,8 @@ static const planner_block program[] = {
     {{1040, 984, 1200}, 1200, 2, 0, 0, ACCELERATION, 3000, 18.1446f},
 };
 #define BLOCKS (sizeof program / sizeof *program)
+/* What they take, as calculated by hand. */
+static const double seconds[BLOCKS] = {0.2925, 0.2100, 0.0078, 0.1653, 0.3200, 0.4629};
 
 /* A block's speeds in mm/s, and where along it they change. */
 typedef struct profile {
@@ -161,6 +163,7 @@ static void check_pulses(const pulses* record, const scale* scale) {
     worst = check_block(record, &next, block, begin, scale->clock_hz);
     CHECK(worst <= allowed, "block %zu: a step %.2f ms off its time", block, worst * 1e3);
     printf("block %zu: steps at most %.2f ms off their times, %.2f ms allowed\n", block, worst * 1e3, allowed * 1e3);
+    CHECK(fabs(time_at(&is, is.length) - seconds[block]) < 0.0001, "block %zu is planned wrongly", block);
     begin += time_at(&is, is.length);
   }
   CHECK(next == record->count || record->steps[next].at_pin, "steps beyond the last block");
