@@ -125,17 +125,17 @@ static place above(const place* at, double height) {
   return over;
 }
 
-static void place_part(machine* is, const part* part) {
-  place over = above(&part->feeder, travel_height);
-  const double down = travel_height - part->feeder.at[Z];
-  const double up = travel_height - part->board.at[Z];
+static void place_part(machine* is, const part* one) {
+  place over = above(&one->feeder, travel_height);
+  const double down = travel_height - one->feeder.at[Z];
+  const double up = travel_height - one->board.at[Z];
   move_to(is, &over, 200, 3000, 0, 0, 0);
-  move_to(is, &part->feeder, 50, 1500, (down - 1) / down, VACUUM, 0);
+  move_to(is, &one->feeder, 50, 1500, (down - 1) / down, VACUUM, 0);
   put_dwell(is, 0.02);
   move_to(is, &over, 50, 1500, 0, 0, 0);
-  over = above(&part->board, travel_height);
+  over = above(&one->board, travel_height);
   move_to(is, &over, 200, 3000, 0, 0, 0); /* C turns on the way */
-  move_to(is, &part->board, 50, 1500, 0, 0, 0);
+  move_to(is, &one->board, 50, 1500, 0, 0, 0);
   put_outputs(is, PUFF, VACUUM);
   put_dwell(is, 0.01);
   move_to(is, &over, 50, 1500, 0.5 / up, 0, PUFF);
@@ -149,8 +149,8 @@ static void check_outputs(const pulses* record, uint32_t clock_hz) {
   CHECK(record->changes == 3 * PARTS, "%zu changes of outputs", record->changes);
   for (i = 0; i < record->changes && i < 3 * PARTS; ++i) {
     const trammel_output_change* const change = &record->outputs[i];
-    const part* const part = &parts[i / 3];
-    place expected = i % 3 == 0 ? part->feeder : part->board;
+    const part* const one = &parts[i / 3];
+    place expected = i % 3 == 0 ? one->feeder : one->board;
     if (i % 3 == 0) expected.at[Z] += 1;
     if (i % 3 == 2) expected.at[Z] += 0.5;
     CHECK(change->levels == levels[i % 3], "change %zu: outputs are %x", i, change->levels);

@@ -66,13 +66,13 @@ static profile profile_of(const planner_block* block, float exit_speed_sqr) {
 }
 
 /* How the card counts: one number of feed ticks per mm for all blocks, so that the fastest has a tick in two clocks. */
-typedef struct scale {
+typedef struct tick_scale {
   uint32_t clock_hz;
   double ticks_per_mm;
   int64_t slew_time_ns;
-} scale;
+} tick_scale;
 
-static void put_piece(trammel_card* card, const scale* scale, uint64_t ticks, double speed, double end_speed) {
+static void put_piece(trammel_card* card, const tick_scale* scale, uint64_t ticks, double speed, double end_speed) {
   trammel_ramp ramp = {0};
   trammel_command feed = {0};
   if (ticks == 0) return;
@@ -87,7 +87,7 @@ static void put_piece(trammel_card* card, const scale* scale, uint64_t ticks, do
 }
 
 /* Waits where the card's queues are full: that is what holds the planner back. */
-static void put_block(trammel_card* card, const scale* scale, const planner_block* block, float exit_speed_sqr) {
+static void put_block(trammel_card* card, const tick_scale* scale, const planner_block* block, float exit_speed_sqr) {
   const profile is = profile_of(block, exit_speed_sqr);
   const uint64_t accelerated = (uint64_t)llround(is.accelerated * scale->ticks_per_mm);
   const uint64_t braked_at = (uint64_t)llround(is.braked_at * scale->ticks_per_mm);
@@ -146,7 +146,7 @@ static double check_block(const pulses* record, size_t* next, size_t block, doub
 
 /* From the first step on, which tells when the card has begun. The last tick before a rest comes early, by half of the
    time that it takes at the speed there; what is rounded to ticks and clocks stays below 0.05 ms and 50 clocks. */
-static void check_pulses(const pulses* record, const scale* scale) {
+static void check_pulses(const pulses* record, const tick_scale* scale) {
   profile is = profile_of(&program[0], exit_speed_sqr_of(0));
   const double at_rest = 1 / sqrt(is.acceleration * scale->ticks_per_mm);
   size_t next = 0;
@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
   trammel_identification identification;
   trammel_place from, to;
   pulses record = {0};
-  scale scale = {0};
+  tick_scale scale = {0};
   int64_t sum[AXES] = {0};
   size_t block;
   unsigned axis;
