@@ -1,0 +1,43 @@
+// The words of a line, by Grbl's modal groups. Internal to the block parser.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trammel/grbl/modal.hpp"
+#include "trammel/grbl/numbers.hpp"
+
+namespace trammel::grbl {
+
+struct Words {
+  enum class Command { kNone, kMotion, kNonModal, kToolLength };
+
+  std::map<char, std::string> values;  // letters other than G and M, as written
+  std::vector<std::string> codes;      // for the project's reader
+  std::string axes;                    // letters of the axis words
+  Command command = Command::kNone;    // what the axis words are for
+  int motion = -1;                     // of the motion group, as Modal::motion
+  int non_modal = -1;                  // tenths: 40, 100, 280, 281, 300, 301, 530, 920, 921
+  int program = -1;                    // 0, 2, 30
+  bool tool_length = false;            // G43.1
+  bool outputs = false;                // M3 .. M5, M7 .. M9
+  bool system = false;                 // G54 .. G59
+  bool plane = false;
+  bool feed_mode = false;
+  unsigned groups = 0;      // bits of the groups met
+  std::vector<int> g_codes; // tenths
+  std::vector<int> m_codes;
+
+  bool has(char letter) const { return values.count(letter) != 0; }
+  double value(char letter) const;
+  // Without those of axes.
+  std::string letters() const;
+};
+
+Status read_words(std::string_view line, std::string_view axes, Words& words);
+// G and M codes, F, S, T and G43.1's Z.
+Status apply_words(const Words& words, Modal& modal);
+
+}  // namespace trammel::grbl
