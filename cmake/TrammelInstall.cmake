@@ -16,7 +16,8 @@ set(trammel_cpp_libraries trammel_card_map trammel_frames trammel_model trammel_
 install(TARGETS ${trammel_cpp_libraries} trammel_c EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
-install(FILES "${PROJECT_SOURCE_DIR}/bindings/c/include/trammel.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+install(FILES "${PROJECT_SOURCE_DIR}/bindings/c/include/trammel.h"
+  "${PROJECT_SOURCE_DIR}/bindings/c/include/trammel_machine.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   COMPONENT trammel_development)
 install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"

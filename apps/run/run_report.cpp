@@ -121,7 +121,7 @@ std::string accepted_words(const std::map<std::string, std::size_t>& words) {
       {"|M0|M1|", "stops for the operator, which a simulation does not make:"},
       {"|G64 Q|", "no lines are joined to fewer (naive cam):"},
       {"|M3|M4|M5|M7|M8|M9|", "no output for them in [outputs] of the machine file:"},
-      {"|S|", "a value that waits for modulated outputs:"},
+      {"|S|", "no output for it in [spindle] of the machine file:"},
       {"|M6|", "tool changes, each a stop:"},
       {"|G28|", "rapids to the home position of the machine file, nothing was searched:"},
       {"|G4 P|", "dwells in seconds, which printers' firmware takes as milliseconds:"},

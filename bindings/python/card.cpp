@@ -126,6 +126,9 @@ void bind_card(nb::module_& m) {
   bind_inputs(m, card);
   bind_guards(m, card);
   bind_place(m, card);
+  bind_pwm(m, card);
+  bind_world(m, card);
+  bind_machine_file(m, card);
   bind_simulation(card);
   m.def("open", waiting(open_card), "url"_a,
         "The card that a URL names: sim:, tcp://host:port, serial:/dev/..., spi:/dev/..., mmap:/dev/...");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "module.hpp"
+#include "trammel/bindings/simulated_machine.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/sim/engine.hpp"
 
@@ -72,6 +73,7 @@ class PythonCard {
   }
 
   StepRecord steps;
+  std::shared_ptr<bindings::CardInWorld> world;  // where it has a machine behind its pins
 
  private:
   ClosableBus bus_;

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/run/card_place.hpp"
+#include "trammel/run/homing.hpp"
 
 namespace trammel::python {
 namespace {
@@ -57,6 +59,10 @@ void translate(const std::exception_ptr& thrown, void*) {
     raise(error_types.link, e);
   } catch (const driver::IdentificationError& e) {
     raise(error_types.identification, e);
+  } catch (const run::HomingError& e) {
+    raise(error_types.homing, e);
+  } catch (const run::PlaceError& e) {
+    raise(error_types.state, e);
   }
 }
 
@@ -79,6 +85,8 @@ void bind_errors(nb::module_& m) {
       make_error(m, "ArgumentError", "A value is out of range; the card was not accessed.", t.error, PyExc_ValueError);
   t.timeout = make_error(m, "TimeoutError", "The card did not reach the state in the time allowed: waited.", t.error,
                          PyExc_TimeoutError);
+  t.homing =
+      make_error(m, "HomingError", "An axis was not homed: its message names axis, input and distance.", t.error);
   nb::register_exception_translator(translate);
 }
 

@@ -10,10 +10,9 @@ NB_MODULE(_trammel, m) {
   m.attr("__version__") = TRAMMEL_VERSION;
   bind_errors(m);
   bind_card_values(m);
-  bind_card(m);
   bind_commands(m);
+  bind_card(m);
   bind_stream(m);
   bind_position_stream(m);
-  bind_world(m);
   bind_interpolation(m.def_submodule("interpolation", "The interpolators of both papers and their rivals."));
 }

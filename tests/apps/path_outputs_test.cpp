@@ -118,7 +118,7 @@ TEST_F(PathIo, OutputsChangeAtTheirPlaceOnThePathWithoutAStop) {
       R"({"level":0,"off":1,"on":1,"output":1,"words":["M4"]},{"level":0,"off":1,"on":1,"output":3,"words":["M8"]}])");
   EXPECT_NE(summary_.find("output 0 (M3, M4): switched on 2 times, off 2 times, off at the end\n"), std::string::npos)
       << summary_;
-  EXPECT_NE(summary_.find("waits for modulated outputs: S (1)\n"), std::string::npos) << summary_;
+  EXPECT_NE(summary_.find("no output for it in [spindle] of the machine file: S (1)\n"), std::string::npos) << summary_;
 }
 
 TEST_F(PathIo, AStartInTheMiddleRestoresOutputs) {

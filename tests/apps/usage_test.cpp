@@ -171,7 +171,8 @@ TEST(Notes, WordsWithoutEffectByTheReason) {
   EXPECT_NE(outcome.out.find("no lines are joined to fewer (naive cam): G64 Q (1)\n"), std::string::npos)
       << outcome.out;
   EXPECT_NE(outcome.out.find("[outputs] of the machine file: M3 (1) M5 (1)\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("waits for modulated outputs: S (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no output for it in [spindle] of the machine file: S (1)\n"), std::string::npos)
+      << outcome.out;
   EXPECT_NE(outcome.out.find("no hardware: M84 (1) T (1)\n"), std::string::npos) << outcome.out;
 }
 

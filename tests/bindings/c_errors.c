@@ -190,8 +190,8 @@ static void command_arguments(void) {
   command = command_of(TRAMMEL_WAIT_INPUT);
   command.as.wait_input.input = 19;
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "input");
-  command = command_of(10);
-  FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "kind 10");
+  command = command_of(11);
+  FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "kind 11");
   command = command_of(TRAMMEL_END);
   DONE(trammel_put(card, &command));  // after all these the stream is as it was
   DONE(trammel_finish(card, NULL));

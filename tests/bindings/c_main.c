@@ -50,6 +50,8 @@ int main(void) {
   test_place();
   test_inputs();
   test_guards();
+  test_machine();
+  test_pwm();
   test_errors();
   printf("%lu checks of trammel.h, %lu failed\n", checks_made, checks_failed);
   return checks_failed == 0 ? 0 : 1;

@@ -38,8 +38,10 @@ void test_cards(void);
 void test_errors(void);
 void test_guards(void);
 void test_inputs(void);
+void test_machine(void);
 void test_place(void);
 void test_positions(void);
+void test_pwm(void);
 void test_stream(void);
 
 #endif

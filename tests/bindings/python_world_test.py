@@ -20,7 +20,7 @@ class AtTheMachine(unittest.TestCase):
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         lines = [self.server.stdout.readline() for _ in range(3)]
         self.url = re.search(r"tcp://[^?']+", lines[0]).group().strip()
-        self.world = trammel.ServedWorld(self.url + "?token=secret")
+        self.world = trammel.open_world(self.url + "?token=secret")
 
     def tearDown(self):
         self.server.terminate()
@@ -59,9 +59,9 @@ class AtTheMachine(unittest.TestCase):
         with self.assertRaisesRegex(trammel.Error, "estop"):
             self.world.press("stop")
         with self.assertRaisesRegex(trammel.Error, "token"):
-            trammel.ServedWorld(self.url).press("estop")
+            trammel.open_world(self.url).press("estop")
         with self.assertRaisesRegex(trammel.Error, "serve"):
-            trammel.ServedWorld("sim:")
+            trammel.open_world("sim:")
         # Nobody moves the card: the condition never comes.
         with self.assertRaises(trammel.LinkError):
             self.world.press("estop", when="X > 40", longest_ns=100_000_000)

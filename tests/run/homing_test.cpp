@@ -146,6 +146,15 @@ TEST_F(HomingTest, ASwitchThatNeverComesEndsTheSearch) {
   EXPECT_FALSE(card_->busy());
 }
 
+TEST_F(HomingTest, WhatHadComeHomeStaysHomedWhenALaterAxisFails) {
+  begin(homing_machine("homing.x.sequence=2;homing.x.search_distance=10"));
+  bus_->add({2, 2, 400, 1});
+  EXPECT_THAT(error_of({0, 2}), HasSubstr("X: "));
+  EXPECT_EQ(card_->read_place().homed, 1U << 2);
+  EXPECT_EQ(error_of({0}).substr(0, 2), "X:");
+  EXPECT_EQ(card_->read_place().homed, 1U << 2);
+}
+
 TEST_F(HomingTest, AGantryThatIsTooSkewEndsAtItsBound) {
   begin(homing_machine("axis.x.second_motor=true;inputs.x_second_home=4;homing.x.squaring=3"));
   bus_->add({0, 0, 1000});

@@ -9,4 +9,17 @@ export function make(tag, attributes = {}, ...children) {
   element.append(...children.filter((child) => child != null))
   return element
 }
+// A canvas of this size on the page, emptied, in the screen's own pixels.
+export function sizeCanvas(canvas, width, height) {
+  const ratio = window.devicePixelRatio || 1
+  Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) })
+  Object.assign(canvas.style, { width: `${width}px`, height: `${height}px` })
+}
+// To draw on it in the page's pixels.
+export function contextOf(canvas, width) {
+  const context = canvas.getContext('2d')
+  const ratio = canvas.width / width
+  context.setTransform(ratio, 0, 0, ratio, 0, 0)
+  return context
+}
 export const byId = (id) => document.getElementById(id)

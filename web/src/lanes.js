@@ -1,6 +1,6 @@
 // The card's inputs as a strip: a lane each, filled while it is active, an edge where it changes; and above them the
 // names of what has held or stopped the run.
-import { make } from './dom.js'
+import { contextOf, make, sizeCanvas } from './dom.js'
 import { colour } from './theme.js'
 import { alpha } from './charts.js'
 import { fixed } from './format.js'
@@ -33,21 +33,15 @@ export class Lanes {
     this.height = this.names + kLane * this.lanes.length + 5
   }
   build(width) {
-    const ratio = window.devicePixelRatio || 1
     this.width = width
-    this.canvas.width = Math.round(width * ratio)
-    this.canvas.height = Math.round(this.height * ratio)
-    this.canvas.style.width = `${width}px`
-    this.canvas.style.height = `${this.height}px`
+    sizeCanvas(this.canvas, width, this.height)
   }
   read(cycle) {
     this.lanes.forEach((lane, i) => { this.values[i].textContent = activeAt(lane, cycle) ? 'active' : '–' })
   }
   // From and to: card clocks. The plot begins `left` pixels from the canvas's edge.
   draw(from, to, left) {
-    const context = this.canvas.getContext('2d')
-    const ratio = this.canvas.width / this.width
-    context.setTransform(ratio, 0, 0, ratio, 0, 0)
+    const context = contextOf(this.canvas, this.width)
     context.clearRect(0, 0, this.width, this.height)
     this.view = { from, to, left, x: (cycle) => left + (cycle - from) / (to - from) * (this.width - left) }
     context.save()

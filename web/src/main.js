@@ -9,7 +9,7 @@ import { Lanes } from './lanes.js'
 import { Scope } from './scope.js'
 import { Program } from './program.js'
 import { fillSummary, totalsOf } from './summary.js'
-import { byId, make } from './dom.js'
+import { byId, contextOf, make, sizeCanvas } from './dom.js'
 import { colour, isDark, rampCss, setTheme } from './theme.js'
 import { decimals, duration, fixed, grouped, millimetres, number, ticks } from './format.js'
 
@@ -180,11 +180,9 @@ class Page {
   }
   // One axis of time for all, at the foot.
   drawAxis([from, to]) {
-    const ratio = window.devicePixelRatio || 1, height = 24, width = this.width
-    Object.assign(this.axis, { width: Math.round(width * ratio), height: Math.round(height * ratio) })
-    Object.assign(this.axis.style, { width: `${width}px`, height: `${height}px` })
-    const context = this.axis.getContext('2d')
-    context.setTransform(ratio, 0, 0, ratio, 0, 0)
+    const height = 24, width = this.width
+    sizeCanvas(this.axis, width, height)
+    const context = contextOf(this.axis, width)
     context.font = '11px system-ui, "Noto Sans", "DejaVu Sans", sans-serif'
     context.fillStyle = context.strokeStyle = colour('faint')
     context.textAlign = 'center'

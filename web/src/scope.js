@@ -1,5 +1,5 @@
 // STEP and DIR pins as a scope: single pulses where they can be told apart, else how densely they come.
-import { make } from './dom.js'
+import { contextOf, make, sizeCanvas } from './dom.js'
 import { axisColour, colour } from './theme.js'
 import { alpha, turns } from './charts.js'
 import { drawMark } from './lanes.js'
@@ -22,12 +22,8 @@ export class Scope {
     this.height = 12 + 2 * kRow * Math.max(1, this.motors.length)
   }
   build(width) {
-    const ratio = window.devicePixelRatio || 1
     this.width = width
-    this.canvas.width = Math.round(width * ratio)
-    this.canvas.height = Math.round(this.height * ratio)
-    this.canvas.style.width = `${width}px`
-    this.canvas.style.height = `${this.height}px`
+    sizeCanvas(this.canvas, width, this.height)
     this.motors.forEach((m, i) => { this.swatches[i].style.borderColor = axisColour(this.run.motors[m].letter) })
   }
   read(now) {
@@ -35,9 +31,7 @@ export class Scope {
   }
   // From and to: card clocks. The plot begins `left` pixels from the canvas's edge.
   draw(from, to, left) {
-    const context = this.canvas.getContext('2d')
-    const ratio = this.canvas.width / this.width
-    context.setTransform(ratio, 0, 0, ratio, 0, 0)
+    const context = contextOf(this.canvas, this.width)
     context.clearRect(0, 0, this.width, this.height)
     this.view = { from, scale: (this.width - left) / (to - from), left, to }
     context.font = '10px system-ui, "Noto Sans", "DejaVu Sans", sans-serif'

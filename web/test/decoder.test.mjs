@@ -317,6 +317,8 @@ test('a limit stops the run, and its page ends there', () => {
   assert.ok(Math.abs(run.coordinateAt(0, lane.times[0]) - 300) < 0.1, 'the switch is at 300 mm')
   assert.equal(run.paths.lines.at(-1), 3, 'the fourth line was never begun')
   assert.equal(run.paths.lines[run.pathAt(run.cycles)], 3)
+  assert.ok(run.motion.paths.subarray(0, run.motion.count).every((path) => path < run.paths.count), 'nor is its motion there')
+  assert.ok(run.times.cycles.at(-1) <= run.cycles, `motion until ${run.times.cycles.at(-1)} of ${run.cycles} clocks`)
 })
 
 test('an emergency stop on a ramp says so, and a button without a world', () => {

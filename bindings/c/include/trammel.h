@@ -49,7 +49,8 @@ typedef enum trammel_result {
   TRAMMEL_CANCELLED = 9,       // a progress callback gave back false, or an interrupt ended the wait for a silent link
   TRAMMEL_MEMORY = 10,         // out of memory
   TRAMMEL_INTERNAL = 11,       // a defect of this library
-  TRAMMEL_HELD = 12            // the card stands in a hold that was there before the call: nothing would move
+  TRAMMEL_HELD = 12,           // the card stands in a hold that was there before the call: nothing would move
+  TRAMMEL_HOMING = 13          // an axis was not homed; the text names axis, input and distance (trammel_machine.h)
 } trammel_result;
 
 // The last failure in this thread.
@@ -627,6 +628,27 @@ TRAMMEL_API trammel_result trammel_start_line(trammel_card* card, const trammel_
 TRAMMEL_API trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t margin_ns,
                                             trammel_line_plan* plan);
 
+// ---- PWM: pulses on outputs ----
+//
+// The card's registers say which outputs carry the pulses of a channel, and their period; a command of the stream
+// (TRAMMEL_PWM) sets the duty at its place on the path. docs/reference/behaviour.md of the project, PWM.
+
+#define TRAMMEL_PWM_CHANNELS 2
+
+typedef struct trammel_pwm_channel {
+  uint32_t period;   // clocks of the card, 100 .. 100,000,000; 10,000 after a reset
+  uint16_t outputs;  // bit n: output n carries its pulses; 0: the channel stands still
+} trammel_pwm_channel;
+
+TRAMMEL_API trammel_result trammel_has_pwm(trammel_card* card, bool* has);
+// The period of a frequency, rounded to whole clocks. TRAMMEL_ARGUMENT beyond 1 Hz to 1 MHz, and where a card with this
+// clock cannot have it.
+TRAMMEL_API trammel_result trammel_pwm_period(double frequency_hz, uint32_t clock_hz, uint32_t* period);
+// Both channels, TRAMMEL_PWM_CHANNELS. One whose period is written ends its pulse and begins anew. TRAMMEL_ARGUMENT
+// where the card has no PWM or lacks an output, and for a period out of range.
+TRAMMEL_API trammel_result trammel_set_pwm(trammel_card* card, const trammel_pwm_channel* channels);
+TRAMMEL_API trammel_result trammel_read_pwm(trammel_card* card, trammel_pwm_channel* channels);
+
 // ---- The stream of commands ----
 //
 // Paths and the feed pieces of their time go into two queues of the card: a piece is put before the path that uses it,
@@ -642,7 +664,8 @@ typedef enum trammel_command_kind {
   TRAMMEL_END = 6,
   TRAMMEL_OUTPUT = 7,
   TRAMMEL_MARK = 8,
-  TRAMMEL_WAIT_INPUT = 9
+  TRAMMEL_WAIT_INPUT = 9,
+  TRAMMEL_PWM = 10  // on cards with PWM
 } trammel_command_kind;
 
 // A straight line; an axis that stands has 0. |pulses| <= ticks.
@@ -710,6 +733,15 @@ typedef struct trammel_input_condition {
   uint64_t timeout;  // clocks, 0: none. Not for probes
 } trammel_input_condition;
 
+// The duty of a PWM channel from the last tick of the path before on, at once where none runs.
+typedef struct trammel_pwm_command {
+  uint8_t channel;  // 0 or 1
+  uint16_t duty;    // 2^-16 of the period, 65535: full; where it follows, the largest one
+  bool follows;     // the speed on the path, as trammel_pwm_for_speed() makes it; shift and gain are 0 where it is not
+  uint8_t shift;    // 0 .. 31
+  uint16_t gain;
+} trammel_pwm_command;
+
 typedef struct trammel_command {
   int32_t kind;  // a trammel_command_kind
   union {
@@ -720,6 +752,7 @@ typedef struct trammel_command {
     uint64_t dwell_clocks;
     trammel_output_command output;
     trammel_input_condition wait_input;
+    trammel_pwm_command pwm;
   } as;
 } trammel_command;
 
@@ -736,6 +769,11 @@ typedef struct trammel_stream_options {
   bool (*progress)(void* context, const trammel_progress* progress);
   void* context;
 } trammel_stream_options;
+
+// A duty that follows the speed: `duty` at `rate` feed ticks a clock (2^-31 < rate <= 1), in proportion at others, and
+// `most` at most. TRAMMEL_ARGUMENT for another rate.
+TRAMMEL_API trammel_result trammel_pwm_for_speed(uint8_t channel, uint16_t duty, double rate, uint16_t most,
+                                                 trammel_pwm_command* command);
 
 // Opens the card's stream, which must stand idle; one that was open ends. `options` may be null. TRAMMEL_HELD where the
 // card stands in a hold that this handle has not set.

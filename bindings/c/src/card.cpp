@@ -5,6 +5,7 @@
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/transport/card_url.hpp"
 #include "trammel/transport/connection.hpp"
+#include "trammel_machine.h"
 
 namespace trammel::c {
 
@@ -35,6 +36,14 @@ std::unique_ptr<trammel_card> open_simulated(const trammel_simulation& simulatio
   place.axes = simulation.axes;
   place.clock_hz = simulation.clock_hz;
   return open_place(place);
+}
+
+std::unique_ptr<trammel_card> open_in_world(const trammel_simulation& simulation, const char* world_file) {
+  const auto world = std::make_shared<bindings::CardInWorld>(world_file == nullptr ? "" : world_file, simulation.axes,
+                                                             simulation.clock_hz);
+  auto card = std::make_unique<trammel_card>(std::shared_ptr<driver::Bus>(world, &world->engine()), &world->engine());
+  card->world = world;
+  return card;
 }
 
 driver::AxisSettings settings_of(const trammel_axis_settings& settings) {
@@ -110,6 +119,11 @@ trammel_result trammel_open(const char* url, trammel_card** card) {
 
 trammel_result trammel_open_simulated(const trammel_simulation* simulation, trammel_card** card) {
   return open_card(card, [=] { return open_simulated(required(simulation, "simulation")); });
+}
+
+trammel_result trammel_open_in_world(const trammel_simulation* simulation, const char* world_file,
+                                     trammel_card** card) {
+  return open_card(card, [=] { return open_in_world(required(simulation, "simulation"), world_file); });
 }
 
 trammel_result trammel_open_bus(const trammel_bus* bus, trammel_card** card) {

@@ -107,6 +107,10 @@ driver::Command command_of(const trammel_command& command) {
       const trammel_input_condition& until = command.as.wait_input;
       return driver::WaitInputCommand{until.input, until.level, until.timeout};
     }
+    case TRAMMEL_PWM: {
+      const trammel_pwm_command& pwm = command.as.pwm;
+      return driver::PwmCommand{pwm.channel, pwm.duty, pwm.follows, pwm.shift, pwm.gain};
+    }
   }
   throw driver::ArgumentError("kind " + std::to_string(command.kind) + " is none of trammel_command_kind");
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "trammel.h"
+#include "trammel/bindings/simulated_machine.hpp"
 #include "trammel/driver/bus.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/commands.hpp"
@@ -45,7 +46,8 @@ struct trammel_card {
 
   std::unique_ptr<StepForwarder> steps;  // outlives the bus that calls it
   std::shared_ptr<trammel::driver::Bus> bus;
-  trammel::sim::Engine* engine;  // the bus, where it is a simulated card's
+  trammel::sim::Engine* engine;                           // the bus, where it is a simulated card's
+  std::shared_ptr<trammel::bindings::CardInWorld> world;  // where it has a machine behind its pins
   trammel::driver::Card card;
   // One of them at most: each begins the card's commands anew.
   std::optional<trammel::driver::Stream> stream;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "handle.hpp"
+#include "trammel/run/card_place.hpp"
+#include "trammel/run/homing.hpp"
 
 namespace trammel::c {
 namespace {
@@ -66,6 +68,10 @@ trammel_result note_exception() noexcept {
     note(TRAMMEL_IDENTIFICATION, error.what());
   } catch (const driver::InterruptedError& error) {
     note(TRAMMEL_CANCELLED, error.what());
+  } catch (const run::HomingError& error) {
+    note(TRAMMEL_HOMING, error.what());
+  } catch (const run::PlaceError& error) {
+    note(TRAMMEL_STATE, error.what());
   } catch (const Cancelled&) {
     note(TRAMMEL_CANCELLED, "the progress callback ended the call");
   } catch (const std::bad_alloc&) {
@@ -114,6 +120,8 @@ const char* trammel_result_name(int32_t result) {
       return "TRAMMEL_INTERNAL";
     case TRAMMEL_HELD:
       return "TRAMMEL_HELD";
+    case TRAMMEL_HOMING:
+      return "TRAMMEL_HOMING";
   }
   return "unknown";
 }

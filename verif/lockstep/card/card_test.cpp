@@ -256,7 +256,7 @@ void emergency_stop_after_a_reset(unsigned axes) {
   sim::LockstepCard card = test::card_under_test(axes, 13, 0);
   AxiHost host(card, 13);
   host.wait(1000);
-  for (const std::uint64_t at : {0, 1, 30, 100, 200, 400, 440, 450, 460, 590, 610, 620}) {
+  for (const unsigned at : {0U, 1U, 30U, 100U, 200U, 400U, 440U, 450U, 460U, 590U, 610U, 620U}) {
     host.reset(1);
     host.wait(at);
     host.press_emergency_stop(true);

@@ -3,8 +3,8 @@
 // filter costs accuracy. Axes with the same number in `sequence` home together.
 //
 // Meanwhile soft limits are off, and so is what `ignore_limits` names; the machine's settings hold again at the end,
-// also where homing fails. Only where all named axes have come to their edge do they count as homed; an axis that is
-// being homed counts as not homed.
+// also where homing fails. An axis that is being homed counts as not homed, until all of its number in `sequence` have
+// come to their edges; where a later number fails these stay homed.
 #pragma once
 
 #include <functional>
