@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "words.hpp"
@@ -76,7 +77,10 @@ Status check_unused(const Words& words, bool arc) {
 // The words once more, for the reader: explicit motion, without what it need not see.
 std::string text_of(const Words& words, const Block& block) {
   std::string codes;
-  for (const std::string& code : words.codes) codes += code + " ";
+  // The reader takes one word of coolant in a line.
+  const bool both = std::count(words.m_codes.begin(), words.m_codes.end(), 7) != 0 &&
+                    std::count(words.m_codes.begin(), words.m_codes.end(), 8) != 0;
+  for (const std::string& code : words.codes) codes += both && code == "M7" ? "" : code + " ";
   std::string values;
   for (const auto& [letter, number] : words.values) {
     if (letter != 'N' && letter != 'T') values += fmt::format("{}{} ", letter, number);
@@ -87,6 +91,7 @@ std::string text_of(const Words& words, const Block& block) {
   if (block.probe) codes += block.probe_away ? "G38.5 " : "G38.3 ";
   std::string text = codes + values;
   if (!text.empty()) text += "\n";
+  if (both) text = "M7\n" + text;
   return text;
 }
 

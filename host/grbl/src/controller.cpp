@@ -21,8 +21,10 @@ void Controller::begin() {
   say("\r\nGrbl 1.1h ['$' for help]");
   status_.offsets_changed();
   const bool lock = settings_.flag(22) && machine_.can_home() && !machine_.homed();
-  if (state_ == State::kAlarm || lock) {
+  const End trouble = machine_.trouble();
+  if (state_ == State::kAlarm || state_ == State::kSleep || lock || trouble.alarm != Alarm::kNone) {
     state_ = State::kAlarm;
+    if (!trouble.message.empty()) say(fmt::format("[MSG:{}]", trouble.message));
     say("[MSG:'$H'|'$X' to unlock]");
     return;
   }
@@ -35,8 +37,8 @@ void Controller::answer(Status status) {
 }
 
 void Controller::serve() {
-  while (!waiting_ && !reset_ && pending_alarm_ == Alarm::kNone && queue_.size() < kPlannerBlocks) {
-    if (state_ == State::kHold || state_ == State::kDoor || state_ == State::kSleep || state_ == State::kHome) return;
+  while (!waiting_ && !alone_ && !executing_alone_ && !reset_ && pending_alarm_ == Alarm::kNone && queue_.size() < kPlannerBlocks) {
+    if (held() || state_ == State::kHome) return;
     const std::optional<std::string> line = input_.take();
     if (!line) return;
     last_line_ = std::chrono::steady_clock::now();
@@ -46,67 +48,64 @@ void Controller::serve() {
 }
 
 bool Controller::take(const std::string& line) {
+  const bool busy = executing_ || !queue_.empty();
   if (line.size() > kLongestLine) {
     answer(Status::kLineTooLong);
   } else if (line.empty()) {
     answer(Status::kOk);
   } else if (line.rfind("$J=", 0) == 0) {
-    // While jogs are under way another one joins them.
-    if (executing_ && state_ != State::kJog && state_ != State::kRun) return false;
+    // Outputs are no reason to refuse a jog.
+    if (busy && state_ == State::kIdle) return false;
     take_jog(line.substr(3));
   } else if (line[0] == '$') {
-    const bool quick = line == "$G" || line == "$";
-    if (!quick && state_ != State::kRun && state_ != State::kJog && executing_) return false;
+    if (busy && state_ == State::kIdle && line != "$G" && line != "$") return false;
     system(line);
   } else if (state_ == State::kAlarm || state_ == State::kJog) {
     answer(Status::kLocked);
   } else {
     Block block;
     const Status status = parse_block(line, interpreter_.modal(), interpreter_.letters(), block);
-    if (status == Status::kOk && block.waits() && (executing_ || !queue_.empty())) return false;
+    if (status == Status::kOk && block.waits() && busy) return false;
     take_code(line);
   }
   return true;
 }
 
+// What holds before the next line.
+Controller::Accepted Controller::accepted() const {
+  const Modal& modal = interpreter_.modal();
+  return {preamble(modal), {}, {interpreter_.place(), interpreter_.parameters(), modal.spindle, modal.speed}};
+}
+
 void Controller::take_code(const std::string& line) {
-  Accepted accepted;
-  accepted.before = preamble(interpreter_.modal());
-  accepted.parameters = interpreter_.parameters();
-  accepted.place = interpreter_.place();
-  const Status status = interpreter_.read(line, block_);
+  Accepted next = accepted();
+  Block& block = next.block;
+  const Status status = interpreter_.read(line, block);
   if (status == Status::kTravelExceeded && state_ != State::kCheck) return raise(Alarm::kSoftLimit);
   if (status != Status::kOk) return answer(status);
-  if (block_.offsets) {
+  if (block.offsets) {
     status_.offsets_changed();
     settings_.set_parameters(interpreter_.parameters());
   }
-  if (block_.outputs || block_.end) status_.overrides_changed();
+  if (block.outputs || block.end) status_.overrides_changed();
   if (state_ == State::kCheck) return answer(Status::kOk);
-  accepted.text = block_.text;
-  accepted.number = block_.line_number;
-  accepted.moves = block_.moves;
-  if (block_.waits()) {
-    to_execute_ = accepted;
+  if (block.waits()) {
+    alone_ = next;
     return;
   }
-  const bool needed = block_.moves || block_.outputs || executing_ || !queue_.empty();
-  if (needed && !accepted.text.empty()) queue_.push_back(accepted);
-  if (block_.moves && state_ == State::kIdle) state_ = State::kRun;
+  const bool needed = block.moves || block.outputs || executing_ || !queue_.empty();
+  if (block.moves && state_ == State::kIdle) state_ = State::kRun;
+  if (needed && !block.text.empty()) queue_.push_back(std::move(next));
   answer(Status::kOk);
 }
 
 void Controller::take_jog(const std::string& line) {
-  if (state_ != State::kIdle && state_ != State::kJog) return answer(state_ == State::kAlarm ? Status::kLocked : Status::kNotIdle);
-  Accepted accepted;
-  accepted.before = preamble(interpreter_.modal());
-  accepted.parameters = interpreter_.parameters();
-  accepted.place = interpreter_.place();
-  const Status status = interpreter_.read_jog(line, block_);
+  if (state_ == State::kAlarm) return answer(Status::kLocked);
+  if (state_ != State::kIdle && state_ != State::kJog) return answer(Status::kNotIdle);
+  Accepted next = accepted();
+  const Status status = interpreter_.read_jog(line, next.block);
   if (status != Status::kOk) return answer(status);
-  accepted.text = block_.text;
-  accepted.moves = true;
-  queue_.push_back(accepted);
+  queue_.push_back(std::move(next));
   state_ = State::kJog;
   answer(Status::kOk);
 }
@@ -115,119 +114,132 @@ void Controller::work() {
   serve();
   if (reset_) return finish_reset();
   if (pending_alarm_ != Alarm::kNone) return raise(pending_alarm_);
-  const bool held = state_ == State::kHold || state_ == State::kDoor || state_ == State::kSleep;
-  if (!held && to_execute_) return execute_waiting();
-  if (!held && !queue_.empty()) return run_section();
-  if (!held && waiting_) {
-    const std::string line = *waiting_;
-    waiting_.reset();
-    if (!take(line)) waiting_ = line;
-    return;
+  if (cancelling_jog_) return finish_jog();
+  if (!held()) {
+    if (!queue_.empty()) return run_section();
+    if (alone_) return execute();
+    if (waiting_) {
+      const std::string line = std::move(*waiting_);
+      waiting_.reset();
+      take(line);
+      return;
+    }
   }
   if (state_ != State::kAlarm) {
-    if (const Alarm alarm = machine_.fault(); alarm != Alarm::kNone) return raise(alarm);
+    if (const End trouble = machine_.trouble(); trouble.alarm != Alarm::kNone) {
+      return raise(trouble.alarm, trouble.message);
+    }
   }
   machine_.wait();
 }
 
 void Controller::run_section() {
   const Accepted first = queue_.front();
+  if (state_ == State::kIdle && first.block.moves) state_ = State::kRun;
   numbers_.clear();
-  SectionLines lines(*this, first.before);
+  SectionLines lines(*this, first.preamble);
   executing_ = true;
-  const End end = machine_.run(lines, first.place, first.parameters);
+  const End end = machine_.run(lines, first.before);
   executing_ = false;
   ended(end);
+}
+
+void Controller::drop_lines() {
+  queue_.clear();
+  alone_.reset();
+  waiting_.reset();
+  answer_at_resume_ = false;
+}
+
+void Controller::finish_jog() {
+  cancelling_jog_ = false;
+  queue_.clear();
+  interpreter_.stand(machine_.look().at);
+  if (state_ == State::kJog) state_ = State::kIdle;
 }
 
 void Controller::ended(const End& end) {
-  const bool cancelled = stopping_jog_;
-  if (end.stopped || end.alarm != Alarm::kNone || cancelled) {
-    queue_.clear();
-    to_execute_.reset();
-    waiting_.reset();
+  const bool cut = end.stopped || end.alarm != Alarm::kNone || !end.message.empty();
+  if (cut) {
+    if (!cancelling_jog_) drop_lines();
+    interpreter_.stand(machine_.look().at);
   }
-  stopping_jog_ = false;
+  if (end.alarm != Alarm::kNone) return raise(end.alarm, end.message);
   if (!end.message.empty()) say(fmt::format("[MSG:{}]", end.message));
-  if (queue_.empty()) interpreter_.stand(end.stopped || cancelled || end.alarm != Alarm::kNone ? machine_.look().at
-                                                                                              : interpreter_.place());
-  if (end.alarm != Alarm::kNone) return raise(end.alarm);
-  if (reset_ || pending_alarm_ != Alarm::kNone) return;
-  const bool held = state_ == State::kHold || state_ == State::kDoor || state_ == State::kSleep;
-  if (held) before_hold_ = State::kIdle;
-  if (!held && queue_.empty()) state_ = State::kIdle;
+  if (reset_ || pending_alarm_ != Alarm::kNone || cancelling_jog_) return;
+  if (held()) {
+    before_hold_ = State::kIdle;
+  } else if (queue_.empty()) {
+    state_ = State::kIdle;
+  }
 }
 
 // Lines that Grbl answers when they are done: probes, dwells, M0, M2 and M30.
-void Controller::execute_waiting() {
-  const Accepted line = *to_execute_;
-  to_execute_.reset();
-  const Block block = block_;
-  if (block.probe) return probe(line);
-  if (!line.text.empty() && !block.pause) {
-    gcode::TextLines lines(line.before, "grbl");
-    state_ = State::kRun;
-    executing_ = true;
-    const std::string text = line.before + line.text;
-    gcode::TextLines whole(text, "grbl");
-    const End end = machine_.run(whole, line.place, line.parameters);
-    executing_ = false;
-    ended(end);
-    if (end.stopped || end.alarm != Alarm::kNone) return;
+void Controller::execute() {
+  const Accepted line = std::move(*alone_);
+  alone_.reset();
+  if (line.block.probe) return probe(line);
+  if (line.block.pause) {
+    request_hold(State::kHold);
+    answer_at_resume_ = true;
+    return;
   }
-  if (block.pause) request_hold(State::kHold);
-  if (block.end) say("[MSG:Pgm End]");
+  if (!run_alone(line)) return;
+  if (line.block.end) say("[MSG:Pgm End]");
   answer(Status::kOk);
+}
+
+// Whether it was done to its end.
+bool Controller::run_alone(const Accepted& line) {
+  const std::string text = line.preamble + line.block.text;
+  gcode::TextLines lines(text, "grbl");
+  state_ = State::kRun;
+  numbers_.clear();
+  executing_ = executing_alone_ = true;
+  const End end = machine_.run(lines, line.before);
+  executing_ = executing_alone_ = false;
+  if (end.probe) probed_ = *end.probe;
+  ended(end);
+  return !end.stopped && end.alarm == Alarm::kNone && !reset_;
 }
 
 void Controller::probe(const Accepted& line) {
+  if (machine_.look().probe != line.block.probe_away) return raise(Alarm::kProbeInitial);
+  probed_ = {};
+  if (!run_alone(line)) return;
   interpreter_.stand(machine_.look().at);
-  if (machine_.look().probe != block_.probe_away) return raise(Alarm::kProbeInitial);
-  const bool must_trip = block_.probe_must_trip;
-  state_ = State::kRun;
-  executing_ = true;
-  const std::string text = line.before + line.text;
-  gcode::TextLines whole(text, "grbl");
-  const End end = machine_.run(whole, line.place, line.parameters);
-  executing_ = false;
-  if (end.probe) probed_ = *end.probe;
-  ended(end);
-  if (end.stopped || end.alarm != Alarm::kNone) return;
-  interpreter_.stand(machine_.look().at);
+  if (!probed_.tripped) probed_.at = interpreter_.place();
   say(probe_text());
-  if (!probed_.tripped && must_trip) return raise(Alarm::kProbeMissed);
+  if (!probed_.tripped && line.block.probe_must_trip) return raise(Alarm::kProbeMissed);
   answer(Status::kOk);
 }
 
-void Controller::raise(Alarm alarm) {
-  pending_alarm_ = alarm;
+void Controller::raise(Alarm alarm, const std::string& message) {
   if (executing_) {
-    machine_.stop();
-    return;
+    pending_alarm_ = alarm;
+    return machine_.stop();
   }
   pending_alarm_ = Alarm::kNone;
-  queue_.clear();
-  to_execute_.reset();
-  waiting_.reset();
+  drop_lines();
   input_.clear();
   interpreter_.stand(machine_.look().at);
   state_ = State::kAlarm;
   say(fmt::format("ALARM:{}", static_cast<int>(alarm)));
+  if (!message.empty()) say(fmt::format("[MSG:{}]", message));
   say("[MSG:'$H'|'$X' to unlock]");
 }
 
 void Controller::finish_reset() {
   reset_ = false;
-  queue_.clear();
-  to_execute_.reset();
-  waiting_.reset();
+  cancelling_jog_ = false;
+  drop_lines();
+  if (pending_alarm_ != Alarm::kNone) raise(pending_alarm_);
   machine_.hold(false);
   interpreter_.reset();
   interpreter_.stand(machine_.look().at);
   feed_override_ = machine_.override_feed(100);
   machine_.override_rapids(rapid_override_ = 100);
   spindle_override_ = 100;
-  if (state_ != State::kAlarm) state_ = State::kIdle;
   begin();
 }
 

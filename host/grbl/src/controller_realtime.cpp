@@ -24,10 +24,7 @@ void Controller::realtime(std::uint8_t byte) {
     case 0x84:
       return request_hold(State::kDoor);
     case 0x85:
-      if (state_ != State::kJog) return;
-      stopping_jog_ = true;
-      queue_.clear();
-      machine_.stop();
+      if (state_ == State::kJog) cancel_jog();
       return;
     default:
       return override_by(byte);
@@ -56,31 +53,32 @@ void Controller::override_by(std::uint8_t byte) {
 void Controller::request_reset() {
   input_.clear();
   reset_ = true;
-  if (state_ == State::kHome) pending_alarm_ = Alarm::kHomingReset;
+  if (executing_) machine_.stop();
+}
+
+void Controller::cancel_jog() {
+  cancelling_jog_ = true;
+  queue_.clear();
   if (executing_) machine_.stop();
 }
 
 void Controller::request_hold(State state) {
   if (state_ == State::kAlarm || state_ == State::kCheck || state_ == State::kSleep || state_ == State::kHome) return;
-  if (state_ == State::kJog) {
-    stopping_jog_ = true;
-    queue_.clear();
-    machine_.stop();
-    if (state == State::kHold) return;
-  }
-  if (state_ == State::kHold || state_ == State::kDoor) {
-    if (state == State::kDoor) state_ = state;
-    return;
-  }
-  before_hold_ = state_ == State::kJog ? State::kIdle : state_;
-  state_ = state;
+  if (state_ == State::kJog) return cancel_jog();
+  if (!held()) before_hold_ = state_;
+  if (!held() || state == State::kDoor) state_ = state;
   if (executing_) machine_.hold(true);
 }
 
 void Controller::resume() {
-  if (state_ != State::kHold && state_ != State::kDoor) return;
+  if (state_ != State::kHold && state_ != State::kDoor) {
+    if (executing_) machine_.hold(false);  // the machine's own feed hold button
+    return;
+  }
   state_ = before_hold_;
   machine_.hold(false);
+  if (answer_at_resume_) answer(Status::kOk);
+  answer_at_resume_ = false;
 }
 
 }  // namespace trammel::grbl

@@ -9,7 +9,8 @@ namespace trammel::grbl {
 
 void Controller::system(const std::string& line) {
   const Status status = system_status(line);
-  if (pending_alarm_ == Alarm::kNone && !reset_) answer(status);
+  const bool homing_failed = line.rfind("$H", 0) == 0 && status == Status::kOk && state_ == State::kAlarm;
+  if (!homing_failed && !reset_) answer(status);
 }
 
 Status Controller::system_status(const std::string& line) {
@@ -23,6 +24,11 @@ Status Controller::system_status(const std::string& line) {
   }
   const bool still = !executing_ && queue_.empty();
   if (!still || (state_ != State::kIdle && state_ != State::kAlarm && state_ != State::kCheck)) return Status::kNotIdle;
+  return still_status(line);
+}
+
+// Of a machine that stands.
+Status Controller::still_status(const std::string& line) {
   if (line == "$C") return toggle_check();
   if (state_ == State::kCheck) return Status::kNotIdle;
   if (line == "$X") return unlock();
@@ -134,10 +140,12 @@ Status Controller::toggle_check() {
 
 Status Controller::unlock() {
   if (state_ != State::kAlarm) return Status::kOk;
-  if (const Alarm alarm = machine_.unlock(); alarm != Alarm::kNone) {
-    raise(alarm);
+  if (const End stays = machine_.unlock(); stays.alarm != Alarm::kNone) {
+    if (!stays.message.empty()) say(fmt::format("[MSG:{}]", stays.message));
     return Status::kLocked;
   }
+  shape_ = machine_.machine();
+  interpreter_.stand(machine_.look().at);
   say("[MSG:Caution: Unlocked]");
   state_ = State::kIdle;
   run_startup();
@@ -149,17 +157,20 @@ Status Controller::home(const std::string& line) {
   std::vector<std::size_t> axes;
   for (const char letter : line.substr(2)) {
     const auto axis = shape_.axis(letter);
-    if (!axis) return Status::kInvalidStatement;
+    if (!axis || !shape_.axes[*axis].homing) return Status::kInvalidStatement;
     axes.push_back(*axis);
   }
+  // A place that is not known is what homing is for.
   if (state_ == State::kAlarm) machine_.unlock();
   state_ = State::kHome;
   executing_ = true;
-  const End end = machine_.home(axes);
+  End end = machine_.home(axes);
   executing_ = false;
+  if (end.stopped) end.alarm = Alarm::kHomingReset;
   shape_ = machine_.machine();
-  state_ = State::kIdle;
+  interpreter_.stand(machine_.look().at);
   ended(end);
+  if (end.alarm == Alarm::kNone) run_startup();
   return Status::kOk;
 }
 

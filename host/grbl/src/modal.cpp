@@ -28,8 +28,6 @@ std::string preamble(const Modal& modal) {
   std::string text = fmt::format("G21 G94 G{}", modal.plane);
   if (modal.feed > 0) text += fmt::format(" F{:.9f}", modal.feed);
   if (modal.tool_length != 0) text += fmt::format("\nG90 G43.1 Z{:.9f}", modal.tool_length);
-  text += fmt::format("\nS{:.6f}", modal.speed);
-  if (modal.spindle != 5) text += fmt::format(" M{}", modal.spindle);
   text += fmt::format("\nG{} G{} G{}\n", modal.absolute ? 90 : 91, modal.inches ? 20 : 21, modal.inverse_time ? 93 : 94);
   return text;
 }

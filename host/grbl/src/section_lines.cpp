@@ -24,19 +24,19 @@ bool SectionLines::next(std::string_view& line) {
 bool SectionLines::refill() {
   for (;;) {
     controller_.serve();
-    if (controller_.reset_ || controller_.stopping_jog_) return false;
+    if (controller_.reset_ || controller_.pending_alarm_ != Alarm::kNone || controller_.cancelling_jog_) return false;
     if (!controller_.queue_.empty()) break;
     if (!may_wait()) return false;
     controller_.machine_.wait();
   }
-  text_ = controller_.queue_.front().text;
-  number_ = controller_.queue_.front().number;
+  text_ = controller_.queue_.front().block.text;
+  number_ = controller_.queue_.front().block.line_number;
   controller_.queue_.pop_front();
   return true;
 }
 
 bool SectionLines::may_wait() const {
-  if (controller_.waiting_) return false;
+  if (controller_.waiting_ || controller_.alone_) return false;
   const auto now = Clock::now();
   const Live live = controller_.machine_.look();
   if (live.any_sent) return live.seconds_left > kReserve && now - controller_.last_line_ < kFirstMotion;

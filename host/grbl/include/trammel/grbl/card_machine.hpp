@@ -1,24 +1,25 @@
-// The machine behind the protocol, as a card and a machine file make it. Calls run::Runner for each motion and run::home
-// for homing. One thread; `meanwhile` is called from the bus's sleeps.
+// The machine behind the protocol, as a card and a machine file make it: each motion is a run::Runner, homing is
+// run::home(). One thread; `meanwhile` is called from the bus's sleeps.
 #pragma once
 
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "trammel/driver/card.hpp"
 #include "trammel/grbl/machine_side.hpp"
+#include "trammel/run/card_place.hpp"
 #include "trammel/run/machine_position.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace trammel::grbl {
 
-// A bus whose sleeps are short and call a function; where `card_time` tells the time of a simulated card, that is no
-// faster than the host's.
+// A bus whose sleeps are short, and call a function after each.
 class AttentiveBus final : public driver::Bus {
  public:
-  explicit AttentiveBus(driver::Bus& bus, std::function<std::chrono::nanoseconds()> card_time = {})
-      : bus_(bus), card_time_(std::move(card_time)) {}
+  // `bus` must outlive it.
+  explicit AttentiveBus(driver::Bus& bus) : bus_(bus) {}
   void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
 
   std::size_t transfer(driver::Access* accesses, std::size_t count) override { return bus_.transfer(accesses, count); }
@@ -27,20 +28,15 @@ class AttentiveBus final : public driver::Bus {
   std::string hold_origin() const override { return bus_.hold_origin(); }
 
  private:
-  void keep_pace();
-
   driver::Bus& bus_;
-  std::function<std::chrono::nanoseconds()> card_time_;
   std::function<void()> meanwhile_;
-  bool inside_ = false;
-  std::chrono::steady_clock::time_point host_{};
-  std::chrono::nanoseconds card_{-1};
+  bool inside_ = false;  // of `meanwhile_`
 };
 
 class CardMachine final : public MachineSide, private run::Observer {
  public:
-  // `card` is open on `bus`, stands, and has no fault; both must outlive it. Throws run::PlaceError where the machine
-  // may not move from where it stands (`trust`: a lost place is taken), and driver::Error.
+  // `card` is open on `bus` and stands; both must outlive it. `trust`: a place that was lost is taken for the
+  // machine's. Throws driver::Error, and driver::ArgumentError for a machine that the card cannot drive.
   CardMachine(driver::Card& card, AttentiveBus& bus, const machine::Machine& machine, bool trust);
 
   const machine::Machine& machine() const override { return limited_; }
@@ -53,40 +49,43 @@ class CardMachine final : public MachineSide, private run::Observer {
   void stop() override;
   double override_feed(double percent) override;
   void override_rapids(double percent) override;
-  End run(gcode::LineSource& lines, const gcode::Coordinates& start, const std::map<int, double>& parameters) override;
+  End run(gcode::LineSource& lines, const Before& before) override;
   End home(const std::vector<std::size_t>& axes) override;
   bool can_home() const override;
   bool homed() override;
   bool has_probe() const override { return machine_.probe.input.has_value(); }
-  Alarm fault() override;
-  Alarm unlock() override;
+  End trouble() override;
+  End unlock() override;
 
  private:
   using Clock = std::chrono::steady_clock;
   void sending(const planner::PlannedBlock& block) override;
-  void progress(const run::Progress& progress) override;
-  void take_place();
-  void set_up();
-  void look_position();
-  Alarm alarm_of_fault();
+  void progress(const run::Progress& progress) override { line_ = progress.line; }
+  void set_up(bool trust);
+  void begin_at(const gcode::Coordinates& at);
+  void keep_coordinates(const gcode::Coordinates& at);
+  void look_at_position();
+  void look_at_inputs();
+  void set_ratio(driver::PieceClass piece_class, double percent);
+  End fault();
   // Calls `move`; what it throws becomes an End.
   End guarded(const std::function<void(End&)>& move);
+  std::vector<std::size_t> axes_with_switches() const;
 
   driver::Card& card_;
   AttentiveBus& bus_;
-  bool trust_;
   machine::Machine machine_;
-  machine::Machine limited_;  // with the soft limits of homed axes alone
+  machine::Machine limited_;  // with the soft limits of homed axes alone, and a window for a sender
+  std::string lost_;          // why the place is not known; empty where it is
   std::unique_ptr<run::MachinePosition> position_;
   bool moving_ = false;
-  bool held_ = false;
   std::size_t line_ = 0;
-  double planned_ = 0;
-  Clock::time_point first_sent_;
-  bool any_sent_ = false;
-  std::uint64_t last_time_ = 0;
-  gcode::Coordinates last_at_{};
-  double speed_ = 0;
+  double planned_ = 0;               // s of motion sent
+  std::uint64_t begun_ = 0;          // card clock of the first look behind it; 0: none yet
+  Live live_;
+  Clock::time_point looked_{};
+  std::uint64_t speed_time_ = 0;     // card clock of the last measure of speed
+  gcode::Coordinates speed_at_{};
 };
 
 }  // namespace trammel::grbl

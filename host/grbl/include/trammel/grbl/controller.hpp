@@ -39,16 +39,15 @@ class Controller {
   void work();
 
   State state() const { return state_; }
+  // Nothing is under way or waits to be done.
+  bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_; }
 
  private:
   friend class SectionLines;
   struct Accepted {
-    std::string text;
-    std::string before;  // the lines that a section needs that begins with it
-    int number = 0;
-    bool moves = false;
-    std::map<int, double> parameters;  // in force before it
-    gcode::Coordinates place{};        // likewise
+    std::string preamble;  // lines that a section needs that begins with this one
+    Block block;
+    Before before;
   };
 
   void realtime(std::uint8_t byte);
@@ -56,17 +55,23 @@ class Controller {
   void request_reset();
   void request_hold(State state);
   void resume();
+  void cancel_jog();
   void finish_reset();
-  void raise(Alarm alarm);
+  void finish_jog();
+  void raise(Alarm alarm, const std::string& message = {});
+  void drop_lines();
 
-  // Whether the line is done with; else it stays for work().
+  // Whether the line is done with; else it waits for what is under way.
   bool take(const std::string& line);
   void take_code(const std::string& line);
   void take_jog(const std::string& line);
-  void execute_waiting();
+  Accepted accepted() const;
+  void execute();
+  bool run_alone(const Accepted& line);
   void probe(const Accepted& line);
   void system(const std::string& line);
   Status system_status(const std::string& line);
+  Status still_status(const std::string& line);
   Status set_line(const std::string& line);
   Status startup_line(const std::string& line);
   Status restore(char what);
@@ -77,6 +82,7 @@ class Controller {
   void run_section();
   void ended(const End& end);
   void apply_settings();
+  bool held() const { return state_ == State::kHold || state_ == State::kDoor || state_ == State::kSleep; }
 
   std::string offsets_text() const;
   std::string probe_text() const;
@@ -95,13 +101,14 @@ class Controller {
   State state_ = State::kIdle;
   State before_hold_ = State::kIdle;
   std::deque<Accepted> queue_;
-  std::vector<int> numbers_;  // N words of the section's lines, by line
-  Block block_;
-  std::optional<std::string> waiting_;  // a line that waits until all before it is done
-  std::optional<Accepted> to_execute_;
-  bool executing_ = false;  // within work()'s motion
+  std::vector<int> numbers_;            // N words of the section's lines, by line
+  std::optional<std::string> waiting_;  // a line that is taken when all before it is done
+  std::optional<Accepted> alone_;       // an accepted one that is answered when it is done
+  bool answer_at_resume_ = false;       // of M0
+  bool executing_ = false;              // within a motion of the machine
+  bool executing_alone_ = false;        // of a line that is answered when it is done
   bool reset_ = false;
-  bool stopping_jog_ = false;
+  bool cancelling_jog_ = false;
   Alarm pending_alarm_ = Alarm::kNone;
   Probed probed_;
   std::chrono::steady_clock::time_point last_line_;

@@ -34,6 +34,14 @@ struct Probed {
   gcode::Coordinates at{};
 };
 
+// What holds before a motion's first line.
+struct Before {
+  gcode::Coordinates place{};         // where the machine stands
+  std::map<int, double> parameters;   // as LinuxCNC numbers them
+  int spindle = 5;                    // M3, M4 or M5; the outputs are so already
+  double speed = 0;                   // S
+};
+
 // How a motion has ended; the machine stands.
 struct End {
   bool stopped = false;  // by stop()
@@ -63,18 +71,18 @@ class MachineSide {
   virtual double override_feed(double percent) = 0;
   virtual void override_rapids(double percent) = 0;
 
-  // Plans and moves along the lines as they come, up to their end; `start` is where the machine stands.
-  virtual End run(gcode::LineSource& lines, const gcode::Coordinates& start, const std::map<int, double>& parameters) = 0;
+  // Plans and moves along the lines as they come, up to their end.
+  virtual End run(gcode::LineSource& lines, const Before& before) = 0;
   // Axes of the machine; none: all that can.
   virtual End home(const std::vector<std::size_t>& axes) = 0;
   virtual bool can_home() const = 0;
   virtual bool homed() = 0;
   virtual bool has_probe() const = 0;
 
-  // A fault that has come while nothing moved.
-  virtual Alarm fault() = 0;
-  // Clears faults: kNone, or the alarm that stays.
-  virtual Alarm unlock() = 0;
+  // What keeps the machine from moving while it stands: a fault that has come since, or a place that is not known.
+  virtual End trouble() = 0;
+  // Clears it; gives back what stays.
+  virtual End unlock() = 0;
 };
 
 }  // namespace trammel::grbl

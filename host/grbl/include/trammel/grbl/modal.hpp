@@ -25,7 +25,7 @@ struct Modal {
 
 // "[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]"; `report_inches`: $13.
 std::string parser_state(const Modal& modal, bool report_inches);
-// Lines for the project's reader that bring it to this state, motion mode and coordinate system aside.
+// Lines for the project's reader that bring it to this state; motion mode, coordinate system and spindle aside.
 std::string preamble(const Modal& modal);
 
 }  // namespace trammel::grbl
