@@ -138,11 +138,14 @@ void grbl_command(const GrblOptions& options) {
 
 void add_grbl_command(CLI::App& app) {
   auto options = std::make_shared<GrblOptions>();
-  CLI::App* command = app.add_subcommand("grbl", "a Grbl 1.1 controller for senders (cncjs, bCNC, UGS), with a card behind it");
-  auto* listen = command->add_option("--listen", options->listen, "address and port for senders; port 0: one that is free")
-                     ->type_name("HOST:PORT")
-                     ->capture_default_str();
-  auto* terminal = command->add_flag("--pty", options->terminal, "a serial port (pseudo-terminal) in place of it")->excludes(listen);
+  CLI::App* command =
+      app.add_subcommand("grbl", "a Grbl 1.1 controller for senders (cncjs, bCNC, UGS), with a card behind it");
+  auto* listen =
+      command->add_option("--listen", options->listen, "address and port for senders; port 0: one that is free")
+          ->type_name("HOST:PORT")
+          ->capture_default_str();
+  auto* terminal =
+      command->add_flag("--pty", options->terminal, "a serial port (pseudo-terminal) in place of it")->excludes(listen);
   command->add_flag("--stdio", options->standard, "standard input and output in place of it")
       ->excludes(listen)
       ->excludes(terminal);

@@ -17,7 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::chrono::nanoseconds kSlice = 5ms;  // a real-time command waits no longer
-constexpr auto kFresh = 10ms;                     // a look serves for so long
+constexpr auto kFresh = 20ms;                     // a look at the position serves for so long
+constexpr auto kInputsFresh = 100ms;              // and one at the inputs
 constexpr double kSpeedTime = 0.04;               // s of the card, over which a speed is measured
 // Blocks that the planner waits for before it sends any: as many as twice Grbl's planner holds.
 constexpr double kWindow = 32;
@@ -91,8 +92,8 @@ void CardMachine::set_up(bool trust) {
 void CardMachine::begin_at(const gcode::Coordinates& at) {
   position_ = std::make_unique<run::MachinePosition>(card_.read_snapshot(), machine_);
   for (std::size_t n = 0; n < machine_.axes.size(); ++n) position_->set(n, at[n]);
-  looked_ = {};
   look_at_position();
+  look_at_inputs();
 }
 
 // Other pulses a mm: the coordinates stay, and the axes count as not homed.
@@ -115,6 +116,7 @@ void CardMachine::look_at_position() {
   position_->look(now);
   live_.at = position_->millimetres();
   live_.held = now.status.held;
+  faulted_ = now.status.faulted;
   const double clock = card_.identification().clock_hz;
   const double seconds = static_cast<double>(now.time - speed_time_) / clock;
   if (seconds >= kSpeedTime) {
@@ -142,15 +144,33 @@ void CardMachine::look_at_inputs() {
   live_.probe = level == machine_.probe.touched_level;
 }
 
-Live CardMachine::look() {
+void CardMachine::look_again() {
   const auto now = Clock::now();
   if (now - looked_ >= kFresh) {
-    looked_ = now;
     look_at_position();
-    look_at_inputs();
+    looked_ = Clock::now();
   }
+  if (now - looked_at_inputs_ >= kInputsFresh) {
+    look_at_inputs();
+    looked_at_inputs_ = Clock::now();
+  }
+}
+
+Live CardMachine::look() {
   live_.line = moving_ ? line_ : 0;
   return live_;
+}
+
+bool CardMachine::probe_touches() {
+  look_at_inputs();
+  return live_.probe;
+}
+
+void CardMachine::set_meanwhile(std::function<void()> meanwhile) {
+  bus_.set_meanwhile([this, meanwhile = std::move(meanwhile)] {
+    look_again();
+    meanwhile();
+  });
 }
 
 // While a motion waits for lines nobody else serves the card's watchdog.
@@ -219,7 +239,6 @@ End CardMachine::guarded(const std::function<void(End&)>& move) {
   card_.parts().requests.take_hold();
   card_.parts().requests.take_stop();
   look_at_position();
-  looked_ = {};
   return end;
 }
 
@@ -252,15 +271,13 @@ bool CardMachine::homed() {
   const std::uint8_t homed = card_.read_place().homed;
   const std::string missing = run::axes_without(machine_, homed);
   const auto axes = axes_with_switches();
-  return std::none_of(axes.begin(), axes.end(), [&](std::size_t axis) {
-    return missing.find(machine_.axes[axis].letter) != std::string::npos;
-  });
+  return std::none_of(axes.begin(), axes.end(),
+                      [&](std::size_t axis) { return missing.find(machine_.axes[axis].letter) != std::string::npos; });
 }
 
 End CardMachine::home(const std::vector<std::size_t>& axes) {
-  const End end = guarded([&](End&) {
-    run::home(card_, machine_, *position_, axes.empty() ? axes_with_switches() : axes);
-  });
+  const End end =
+      guarded([&](End&) { run::home(card_, machine_, *position_, axes.empty() ? axes_with_switches() : axes); });
   // What was not homed keeps the place that it had.
   if (end.alarm == Alarm::kNone || lost_.empty()) set_up(false);
   return end;
@@ -282,7 +299,7 @@ End CardMachine::fault() {
 }
 
 End CardMachine::trouble() {
-  End end = fault();
+  End end = faulted_ ? fault() : End{};
   if (end.alarm == Alarm::kNone && !lost_.empty()) {
     end.alarm = Alarm::kPositionLost;
     end.message = lost_;

@@ -37,7 +37,8 @@ void Controller::answer(Status status) {
 }
 
 void Controller::serve() {
-  while (!waiting_ && !alone_ && !executing_alone_ && !reset_ && pending_alarm_ == Alarm::kNone && queue_.size() < kPlannerBlocks) {
+  while (!waiting_ && !alone_ && !executing_alone_ && !reset_ && pending_alarm_ == Alarm::kNone &&
+         queue_.size() < kPlannerBlocks) {
     if (held() || state_ == State::kHome) return;
     const std::optional<std::string> line = input_.take();
     if (!line) return;
@@ -204,7 +205,7 @@ bool Controller::run_alone(const Accepted& line) {
 }
 
 void Controller::probe(const Accepted& line) {
-  if (machine_.look().probe != line.block.probe_away) return raise(Alarm::kProbeInitial);
+  if (machine_.probe_touches() != line.block.probe_away) return raise(Alarm::kProbeInitial);
   probed_ = {};
   if (!run_alone(line)) return;
   interpreter_.stand(machine_.look().at);

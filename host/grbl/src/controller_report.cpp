@@ -10,15 +10,24 @@ constexpr double kInch = 25.4;
 
 std::string name_of(State state, bool held, bool executing) {
   switch (state) {
-    case State::kIdle: return "Idle";
-    case State::kRun: return held ? "Hold:0" : "Run";  // the machine's own feed hold button
-    case State::kHold: return executing && !held ? "Hold:1" : "Hold:0";
-    case State::kJog: return "Jog";
-    case State::kAlarm: return "Alarm";
-    case State::kHome: return "Home";
-    case State::kCheck: return "Check";
-    case State::kSleep: return "Sleep";
-    case State::kDoor: return executing && !held ? "Door:2" : "Door:0";
+    case State::kIdle:
+      return "Idle";
+    case State::kRun:
+      return held ? "Hold:0" : "Run";  // the machine's own feed hold button
+    case State::kHold:
+      return executing && !held ? "Hold:1" : "Hold:0";
+    case State::kJog:
+      return "Jog";
+    case State::kAlarm:
+      return "Alarm";
+    case State::kHome:
+      return "Home";
+    case State::kCheck:
+      return "Check";
+    case State::kSleep:
+      return "Sleep";
+    case State::kDoor:
+      return executing && !held ? "Door:2" : "Door:0";
   }
   return {};
 }

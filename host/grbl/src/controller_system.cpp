@@ -67,10 +67,12 @@ Status Controller::set_line(const std::string& line) {
   const std::string value = line.substr(equal + 1);
   char* end = nullptr;
   const double setting = std::strtod(value.c_str(), &end);
-  if (number.find_first_not_of("0123456789") != std::string::npos || number.size() > 3) return Status::kInvalidStatement;
+  if (number.find_first_not_of("0123456789") != std::string::npos || number.size() > 3)
+    return Status::kInvalidStatement;
   if (value.empty() || *end != '\0') return Status::kBadNumber;
-  const Status status = settings_.set(std::atoi(number.c_str()), setting);
-  if (status == Status::kOk) apply_settings();
+  const int key = std::atoi(number.c_str());
+  const Status status = settings_.set(key, setting);
+  if (status == Status::kOk && Settings::changes_machine(key)) apply_settings();
   return status;
 }
 
@@ -88,7 +90,8 @@ Status Controller::startup_line(const std::string& line) {
   if (line.size() < 4 || line[3] != '=' || (line[2] != '0' && line[2] != '1')) return Status::kInvalidStatement;
   const std::string text = line.substr(4);
   Block block;
-  if (const Status status = parse_block(text, interpreter_.modal(), interpreter_.letters(), block); status != Status::kOk) {
+  if (const Status status = parse_block(text, interpreter_.modal(), interpreter_.letters(), block);
+      status != Status::kOk) {
     return status;
   }
   settings_.set_startup(line[2] == '0' ? 0 : 1, text);

@@ -9,7 +9,9 @@ namespace {
 constexpr std::uint8_t kUtf8Lead = 0xC2;
 constexpr std::uint8_t kReset = 0x18;
 
-bool is_realtime(std::uint8_t byte) { return byte >= 0x80 || byte == '?' || byte == '!' || byte == '~' || byte == kReset; }
+bool is_realtime(std::uint8_t byte) {
+  return byte >= 0x80 || byte == '?' || byte == '!' || byte == '~' || byte == kReset;
+}
 
 }  // namespace
 

@@ -16,16 +16,14 @@ constexpr double kMinute = 60;
 
 // Grbl's own defaults of what a machine file does not say, or says otherwise than by one number.
 const std::map<int, double>& grbl_defaults() {
-  static const std::map<int, double> kDefaults{{1, 25},  {2, 0},   {4, 0},   {5, 0},    {6, 0},   {10, 1},
-                                               {12, 0.002}, {13, 0}, {21, 0}, {23, 0},  {24, 25}, {25, 500},
-                                               {26, 250}, {27, 1}, {31, 0}};
+  static const std::map<int, double> kDefaults{{1, 25},  {2, 0},      {4, 0},    {5, 0},  {6, 0},
+                                               {10, 1},  {12, 0.002}, {13, 0},   {21, 0}, {23, 0},
+                                               {24, 25}, {25, 500},   {26, 250}, {27, 1}, {31, 0}};
   return kDefaults;
 }
 
 // Settings that are switches or masks.
-bool is_whole(int number) {
-  return number != 11 && number != 12 && !(number >= 24 && number <= 31) && number < 100;
-}
+bool is_whole(int number) { return number != 11 && number != 12 && !(number >= 24 && number <= 31) && number < 100; }
 
 double travel_of(const machine::MachineAxis& axis) {
   return std::isfinite(axis.min) && std::isfinite(axis.max) ? axis.max - axis.min : 0;
@@ -121,6 +119,11 @@ Status Settings::set(int number, double value) {
   return Status::kOk;
 }
 
+bool Settings::changes_machine(int number) {
+  constexpr std::array<int, 7> kOfMachine{0, 3, 11, 20, 22, 30, 32};
+  return number >= 100 || std::find(kOfMachine.begin(), kOfMachine.end(), number) != kOfMachine.end();
+}
+
 void Settings::set_startup(std::size_t n, const std::string& line) {
   startup_.at(n) = line;
   write();
@@ -164,7 +167,9 @@ void Settings::read() {
   std::ifstream in(file_);
   for (std::string line; std::getline(in, line);) {
     const std::size_t equal = line.find('=');
-    const auto wrong = [&] { return std::runtime_error(fmt::format("{}: not a setting: {}", file_, line.substr(0, 80))); };
+    const auto wrong = [&] {
+      return std::runtime_error(fmt::format("{}: not a setting: {}", file_, line.substr(0, 80)));
+    };
     if (line.size() < 2 || equal == std::string::npos) throw wrong();
     const std::string name = line.substr(1, equal - 1);
     const std::string value = line.substr(equal + 1);

@@ -12,8 +12,24 @@ constexpr int kLargestLineNumber = 10'000'000;  // Grbl's
 constexpr std::string_view kPlainLetters = "FIJKLNPRST";
 constexpr std::string_view kNotNegative = "FNPTS";
 
-enum Group : unsigned { kNonModalGroup = 1, kMotionGroup, kPlane, kDistance, kArcDistance, kFeedMode, kUnits, kCutter,
-                        kToolLengthGroup, kSystem, kControl, kProgram, kSpindle, kCoolant, kMist, kOverride };
+enum Group : unsigned {
+  kNonModalGroup = 1,
+  kMotionGroup,
+  kPlane,
+  kDistance,
+  kArcDistance,
+  kFeedMode,
+  kUnits,
+  kCutter,
+  kToolLengthGroup,
+  kSystem,
+  kControl,
+  kProgram,
+  kSpindle,
+  kCoolant,
+  kMist,
+  kOverride
+};
 
 bool join(Words& words, Group group) {
   const unsigned bit = 1U << group;
@@ -56,15 +72,34 @@ struct Code {
 // Codes that are no motion and no offsets' commands.
 Code plain_code(int tenths) {
   switch (tenths) {
-    case 170: case 180: case 190: return {kPlane, true, true};
-    case 900: case 910: return {kDistance, true, true};
-    case 911: return {kArcDistance, true, false};
-    case 930: case 940: return {kFeedMode, true, true};
-    case 200: case 210: return {kUnits, true, true};
-    case 400: return {kCutter, true, false};
-    case 540: case 550: case 560: case 570: case 580: case 590: return {kSystem, true, true};
-    case 610: return {kControl, true, false};
-    default: return {kControl, false, false};
+    case 170:
+    case 180:
+    case 190:
+      return {kPlane, true, true};
+    case 900:
+    case 910:
+      return {kDistance, true, true};
+    case 911:
+      return {kArcDistance, true, false};
+    case 930:
+    case 940:
+      return {kFeedMode, true, true};
+    case 200:
+    case 210:
+      return {kUnits, true, true};
+    case 400:
+      return {kCutter, true, false};
+    case 540:
+    case 550:
+    case 560:
+    case 570:
+    case 580:
+    case 590:
+      return {kSystem, true, true};
+    case 610:
+      return {kControl, true, false};
+    default:
+      return {kControl, false, false};
   }
 }
 
@@ -73,14 +108,28 @@ Status read_g(int tenths, const std::string& text, Words& words) {
   Group group = kNonModalGroup;
   bool reader = true;
   switch (tenths) {
-    case 100: case 280: case 300: case 920:
+    case 100:
+    case 280:
+    case 300:
+    case 920:
       status = take_command(words, Words::Command::kNonModal);
       words.non_modal = tenths;
       break;
-    case 40: case 530: case 281: case 301: case 921:
+    case 40:
+    case 530:
+    case 281:
+    case 301:
+    case 921:
       words.non_modal = tenths;
       break;
-    case 0: case 10: case 20: case 30: case 382: case 383: case 384: case 385:
+    case 0:
+    case 10:
+    case 20:
+    case 30:
+    case 382:
+    case 383:
+    case 384:
+    case 385:
       status = take_command(words, Words::Command::kMotion);
       group = kMotionGroup;
       words.motion = tenths;
@@ -90,14 +139,16 @@ Status read_g(int tenths, const std::string& text, Words& words) {
       group = kMotionGroup;
       words.motion = tenths;
       break;
-    case 431: case 490:
+    case 431:
+    case 490:
       status = take_command(words, Words::Command::kToolLength);
       group = kToolLengthGroup;
       words.tool_length = tenths == 431;
       break;
     default: {
       const Code code = plain_code(tenths);
-      if (!code.known) return tenths % 10 != 0 && plain_code(tenths / 10 * 10).known ? Status::kNotInteger : Status::kUnsupported;
+      if (!code.known)
+        return tenths % 10 != 0 && plain_code(tenths / 10 * 10).known ? Status::kNotInteger : Status::kUnsupported;
       group = code.group;
       reader = code.reader;
     }
@@ -117,18 +168,31 @@ Status read_m(int number, Words& words) {
   Group group = kProgram;
   bool reader = true;
   switch (number) {
-    case 0: case 1: case 2: case 30:
+    case 0:
+    case 1:
+    case 2:
+    case 30:
       words.program = number == 1 ? -1 : number;
       reader = number >= 2;
       break;
-    case 3: case 4: case 5: group = kSpindle; break;
-    case 7: group = kMist; break;
-    case 8: case 9: group = kCoolant; break;
+    case 3:
+    case 4:
+    case 5:
+      group = kSpindle;
+      break;
+    case 7:
+      group = kMist;
+      break;
+    case 8:
+    case 9:
+      group = kCoolant;
+      break;
     case 56:
       group = kOverride;
       reader = false;
       break;
-    default: return Status::kUnsupported;
+    default:
+      return Status::kUnsupported;
   }
   words.outputs = words.outputs || group == kSpindle || group == kMist || group == kCoolant;
   if (!join(words, group)) return Status::kModalGroup;

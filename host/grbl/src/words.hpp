@@ -26,8 +26,8 @@ struct Words {
   bool system = false;                 // G54 .. G59
   bool plane = false;
   bool feed_mode = false;
-  unsigned groups = 0;      // bits of the groups met
-  std::vector<int> g_codes; // tenths
+  unsigned groups = 0;       // bits of the groups met
+  std::vector<int> g_codes;  // tenths
   std::vector<int> m_codes;
 
   bool has(char letter) const { return values.count(letter) != 0; }

@@ -22,8 +22,8 @@ struct Block {
   bool probe_away = false;
   bool probe_must_trip = false;
   bool dwell = false;
-  bool pause = false;  // M0
-  bool end = false;    // M2, M30
+  bool pause = false;    // M0
+  bool end = false;      // M2, M30
   bool offsets = false;  // a coordinate offset changes
 
   // Grbl answers ok only when all before it, and it, are done.

@@ -43,8 +43,9 @@ class CardMachine final : public MachineSide, private run::Observer {
   planner::CardLimits limits() const override;
   void set_machine(const machine::Machine& machine) override;
   Live look() override;
+  bool probe_touches() override;
   void wait() override;
-  void set_meanwhile(std::function<void()> meanwhile) override { bus_.set_meanwhile(std::move(meanwhile)); }
+  void set_meanwhile(std::function<void()> meanwhile) override;
   void hold(bool hold) override;
   void stop() override;
   double override_feed(double percent) override;
@@ -66,6 +67,7 @@ class CardMachine final : public MachineSide, private run::Observer {
   void keep_coordinates(const gcode::Coordinates& at);
   void look_at_position();
   void look_at_inputs();
+  void look_again();
   void set_ratio(driver::PieceClass piece_class, double percent);
   End fault();
   // Calls `move`; what it throws becomes an End.
@@ -80,11 +82,13 @@ class CardMachine final : public MachineSide, private run::Observer {
   std::unique_ptr<run::MachinePosition> position_;
   bool moving_ = false;
   std::size_t line_ = 0;
-  double planned_ = 0;               // s of motion sent
-  std::uint64_t begun_ = 0;          // card clock of the first look behind it; 0: none yet
+  double planned_ = 0;       // s of motion sent
+  std::uint64_t begun_ = 0;  // card clock of the first look behind it; 0: none yet
   Live live_;
-  Clock::time_point looked_{};
-  std::uint64_t speed_time_ = 0;     // card clock of the last measure of speed
+  bool faulted_ = false;
+  Clock::time_point looked_{};  // at the position
+  Clock::time_point looked_at_inputs_{};
+  std::uint64_t speed_time_ = 0;  // card clock of the last measure of speed
   gcode::Coordinates speed_at_{};
 };
 

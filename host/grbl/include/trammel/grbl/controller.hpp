@@ -1,5 +1,6 @@
 // A Grbl 1.1h controller: a sender's bytes in, Grbl's answers out, a machine behind it. The caller gives bytes with
-// receive() whenever some have come, also from within MachineSide's `meanwhile`, and calls work() in a loop. One thread.
+// receive() whenever some have come, also from within MachineSide's `meanwhile`, and calls work() in a loop. One
+// thread.
 #pragma once
 
 #include <chrono>

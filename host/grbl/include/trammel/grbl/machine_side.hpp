@@ -36,10 +36,10 @@ struct Probed {
 
 // What holds before a motion's first line.
 struct Before {
-  gcode::Coordinates place{};         // where the machine stands
-  std::map<int, double> parameters;   // as LinuxCNC numbers them
-  int spindle = 5;                    // M3, M4 or M5; the outputs are so already
-  double speed = 0;                   // S
+  gcode::Coordinates place{};        // where the machine stands
+  std::map<int, double> parameters;  // as LinuxCNC numbers them
+  int spindle = 5;                   // M3, M4 or M5; the outputs are so already
+  double speed = 0;                  // S
 };
 
 // How a motion has ended; the machine stands.
@@ -59,7 +59,10 @@ class MachineSide {
   // Only while it stands.
   virtual void set_machine(const machine::Machine& machine) = 0;
 
+  // As it was some 20 ms ago at the most; where the machine stands, as it is.
   virtual Live look() = 0;
+  // Whether the probe touches now.
+  virtual bool probe_touches() = 0;
   // Waits for a moment; calls set_meanwhile()'s function, as run() and home() do while they wait.
   virtual void wait() = 0;
   virtual void set_meanwhile(std::function<void()> meanwhile) = 0;

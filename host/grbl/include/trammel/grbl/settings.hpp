@@ -27,6 +27,8 @@ class Settings {
   std::vector<std::string> lines() const;
   // kInvalidStatement for a number that Grbl lacks, else Grbl's reason for a value that it refuses.
   Status set(int number, double value);
+  // Whether a change of it may change machine().
+  static bool changes_machine(int number);
 
   const std::string& startup(std::size_t n) const { return startup_.at(n); }
   void set_startup(std::size_t n, const std::string& line);
