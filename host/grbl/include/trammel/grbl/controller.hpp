@@ -106,6 +106,7 @@ class Controller {
   std::optional<std::string> waiting_;  // a line that is taken when all before it is done
   std::optional<Accepted> alone_;       // an accepted one that is answered when it is done
   bool answer_at_resume_ = false;       // of M0
+  bool from_work_ = false;              // the line is not from serve()
   bool executing_ = false;              // within a motion of the machine
   bool executing_alone_ = false;        // of a line that is answered when it is done
   bool reset_ = false;
