@@ -41,7 +41,9 @@ class Controller {
 
   State state() const { return state_; }
   // Nothing is under way or waits to be done.
-  bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_; }
+  bool idle() const {
+    return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes();
+  }
 
  private:
   friend class SectionLines;
