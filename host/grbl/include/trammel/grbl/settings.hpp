@@ -45,6 +45,7 @@ class Settings {
 
  private:
   void read();
+  bool read_line(const std::string& line);
   void write() const;
   void apply();
   std::string text_of(int number) const;
