@@ -15,9 +15,9 @@ namespace trammel::grbl {
 
 class Session {
  public:
-  explicit Session(const machine::Machine& machine = router())
+  explicit Session(const machine::Machine& machine = router(), const std::string& file = "")
       : fake(machine),
-        settings(machine, ""),
+        settings(machine, file),
         controller(fake, settings, [this](const std::string& text) { take(text); }) {
     fake.set_meanwhile([this] { controller.serve(); });
   }
@@ -71,10 +71,13 @@ class Session {
     return fields;
   }
   std::string state() { return report().front(); }
-  // A field by its name, "MPos"; "" where the report has none.
+  // A field by its name, "MPos"; "" where the reports have none. Some fields come seldom.
   std::string field(const std::string& name) {
-    for (const std::string& text : report()) {
-      if (text.rfind(name + ":", 0) == 0) return text.substr(name.size() + 1);
+    const bool seldom = name == "WCO" || name == "Ov" || name == "A";
+    for (int n = 0; n < (seldom ? 31 : 1); ++n) {
+      for (const std::string& text : report()) {
+        if (text.rfind(name + ":", 0) == 0) return text.substr(name.size() + 1);
+      }
     }
     return "";
   }

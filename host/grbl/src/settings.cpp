@@ -224,7 +224,7 @@ bool Settings::read_line(const std::string& line) {
 }
 
 // The old file stays whole where the new one cannot be written.
-void Settings::write() const {
+void Settings::write() {
   if (file_.empty()) return;
   const std::string fresh = file_ + ".new";
   std::ofstream out(fresh);
@@ -236,7 +236,7 @@ void Settings::write() const {
   if (!build_text_.empty()) out << fmt::format("$I={}\n", build_text_);
   out.close();
   if (!out || std::rename(fresh.c_str(), file_.c_str()) != 0) {
-    throw std::runtime_error(fmt::format("{}: the settings cannot be written", file_));
+    trouble_ = fmt::format("{}: the settings cannot be written; they hold until the end", file_);
   }
 }
 

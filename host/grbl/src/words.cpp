@@ -22,25 +22,6 @@ bool join(Words& words, Group group) {
   return first;
 }
 
-// Grbl's read_float(): sign, digits, one point; no exponent.
-bool read_number(std::string_view line, std::size_t& at, std::string& text) {
-  const std::size_t begin = at;
-  if (at < line.size() && (line[at] == '-' || line[at] == '+')) ++at;
-  std::size_t digits = 0;
-  bool point = false;
-  for (; at < line.size(); ++at) {
-    if (line[at] == '.' && !point) {
-      point = true;
-    } else if (line[at] >= '0' && line[at] <= '9') {
-      ++digits;
-    } else {
-      break;
-    }
-  }
-  text = line.substr(begin, at - begin);
-  return digits != 0;
-}
-
 struct GCode {
   int tenths;
   Group group;
@@ -166,6 +147,24 @@ Status read_value(char letter, const std::string& text, std::string_view axes, W
 }
 
 }  // namespace
+
+bool read_number(std::string_view line, std::size_t& at, std::string& text) {
+  const std::size_t begin = at;
+  if (at < line.size() && (line[at] == '-' || line[at] == '+')) ++at;
+  std::size_t digits = 0;
+  bool point = false;
+  for (; at < line.size(); ++at) {
+    if (line[at] == '.' && !point) {
+      point = true;
+    } else if (line[at] >= '0' && line[at] <= '9') {
+      ++digits;
+    } else {
+      break;
+    }
+  }
+  text = line.substr(begin, at - begin);
+  return digits != 0;
+}
 
 double Words::value(char letter) const { return std::strtod(values.at(letter).c_str(), nullptr); }
 

@@ -52,6 +52,8 @@ struct Words {
   std::string letters() const;
 };
 
+// Sign, digits, one point; no exponent. `at`: moved behind it.
+bool read_number(std::string_view line, std::size_t& at, std::string& text);
 Status read_words(std::string_view line, std::string_view axes, Words& words);
 // G and M codes, F, S, T and G43.1's Z.
 void apply_words(const Words& words, Modal& modal);

@@ -59,19 +59,21 @@ class Controller {
   void cancel_jog();
   void finish_reset();
   void finish_jog();
+  void restore_overrides();
   void raise(Alarm alarm, const std::string& message = {});
   void drop_lines();
 
   // Whether the line is done with; else it waits for what is under way.
-  bool take(const std::string& line);
+  bool take(const std::string& line, bool at_rest = false);
   void take_code(const std::string& line);
   void take_jog(const std::string& line);
   Accepted accepted() const;
   void execute();
   bool run_alone(const Accepted& line);
-  void probe(const Accepted& line);
+  bool probe(const Accepted& line);
   void system(const std::string& line);
   Status system_status(const std::string& line);
+  Status short_status(char what);
   Status still_status(const std::string& line);
   Status set_line(const std::string& line);
   Status startup_line(const std::string& line);
