@@ -173,8 +173,8 @@ TEST(Controller, ForgetsAPauseAtAReset) {
   session.put("\x18");
   session.settle();
   EXPECT_THAT(session.answers(), ElementsAre(kGreeting));
-  session.put("~");
-  EXPECT_EQ(session.ask("G0X1"), oks(1));
+  session.put("!~");
+  EXPECT_EQ(session.ask("G0X1"), oks(1)) << "no answer is left";
 }
 
 TEST(Controller, TellsTheEndOfAProgram) {
@@ -207,6 +207,8 @@ TEST(Controller, ChecksProgramsWithoutMotion) {
   EXPECT_EQ(session.state(), "Idle");
   EXPECT_EQ(session.field("MPos"), "0.000,0.000,0.000");
   EXPECT_THAT(session.ask("$G"), ElementsAre("[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]", "ok"));
+  session.ask("G91G0X1");
+  EXPECT_EQ(session.field("MPos"), "1.000,0.000,0.000") << "from where the machine stands";
 }
 
 TEST(Controller, RunsStartupLinesAfterItsBanner) {

@@ -46,7 +46,7 @@ class FakeMachine final : public MachineSide {
   End unlock_leaves;
   std::optional<End> motion_fails;  // the next motion, when it has begun
   bool is_homed = true;
-  double most_feed_override = 200;
+  double most_feed_override = 1000;
   Live live;
 
   // What it was asked.
