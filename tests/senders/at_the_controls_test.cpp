@@ -9,7 +9,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kFirstMachine = std::string(" --machine ") + TRAMMEL_EXAMPLES_DIR + "/first-machine.toml --world default";
+const std::string kFirstMachine =
+    std::string(" --machine ") + TRAMMEL_EXAMPLES_DIR + "/first-machine.toml --world default";
 
 class Controls : public ::testing::Test {
  protected:

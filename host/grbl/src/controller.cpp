@@ -33,11 +33,12 @@ void Controller::begin() {
 }
 
 void Controller::answer(Status status) {
+  if (const std::string trouble = settings_.take_trouble(); !trouble.empty()) say(fmt::format("[MSG:{}]", trouble));
   say(status == Status::kOk ? std::string("ok") : fmt::format("error:{}", static_cast<int>(status)));
 }
 
 void Controller::serve() {
-  while (!waiting_ && !alone_ && !executing_alone_ && !reset_ && pending_alarm_ == Alarm::kNone &&
+  while (!waiting_ && !alone_ && !executing_alone_ && !reset_ && !cancelling_jog_ && pending_alarm_ == Alarm::kNone &&
          queue_.size() < kPlannerBlocks) {
     if (held() || state_ == State::kHome) return;
     const std::optional<std::string> line = input_.take();
@@ -48,7 +49,7 @@ void Controller::serve() {
   }
 }
 
-bool Controller::take(const std::string& line) {
+bool Controller::take(const std::string& line, bool at_rest) {
   const bool busy = executing_ || !queue_.empty();
   if (line.size() > kLongestLine) {
     answer(Status::kLineTooLong);
@@ -59,9 +60,9 @@ bool Controller::take(const std::string& line) {
     if (busy && state_ == State::kIdle) return false;
     take_jog(line.substr(3));
   } else if (line[0] == '$') {
-    // What uses the machine is work()'s; while it moves Grbl refuses these at once.
+    // What uses the machine is done from work(), since nothing is served within `meanwhile`.
     const bool moves = state_ == State::kRun || state_ == State::kJog;
-    if (line != "$G" && line != "$" && !moves && (busy || !from_work_)) return false;
+    if (line != "$G" && line != "$" && !moves && (busy || !at_rest)) return false;
     system(line);
   } else if (state_ == State::kAlarm || state_ == State::kJog) {
     answer(Status::kLocked);
@@ -91,7 +92,10 @@ void Controller::take_code(const std::string& line) {
     settings_.set_parameters(interpreter_.parameters());
   }
   if (block.outputs || block.end) status_.overrides_changed();
-  if (state_ == State::kCheck) return answer(Status::kOk);
+  if (state_ == State::kCheck) {
+    if (block.end) say("[MSG:Pgm End]");
+    return answer(Status::kOk);
+  }
   if (block.waits()) {
     alone_ = next;
     return;
@@ -103,7 +107,6 @@ void Controller::take_code(const std::string& line) {
 }
 
 void Controller::take_jog(const std::string& line) {
-  if (state_ == State::kAlarm) return answer(Status::kLocked);
   if (state_ != State::kIdle && state_ != State::kJog) return answer(Status::kNotIdle);
   Accepted next = accepted();
   const Status status = interpreter_.read_jog(line, next.block);
@@ -124,9 +127,7 @@ void Controller::work() {
     if (waiting_) {
       const std::string line = std::move(*waiting_);
       waiting_.reset();
-      from_work_ = true;
-      take(line);
-      from_work_ = false;
+      take(line, true);
       return;
     }
   }
@@ -183,14 +184,17 @@ void Controller::ended(const End& end) {
 void Controller::execute() {
   const Accepted line = std::move(*alone_);
   alone_.reset();
-  if (line.block.probe) return probe(line);
+  if (line.block.probe && !probe(line)) return;
+  if (!line.block.probe && !line.block.text.empty() && !run_alone(line)) return;
   if (line.block.pause) {
     request_hold(State::kHold);
     answer_at_resume_ = true;
     return;
   }
-  if (!run_alone(line)) return;
-  if (line.block.end) say("[MSG:Pgm End]");
+  if (line.block.end) {
+    restore_overrides();
+    say("[MSG:Pgm End]");
+  }
   answer(Status::kOk);
 }
 
@@ -208,15 +212,22 @@ bool Controller::run_alone(const Accepted& line) {
   return !end.stopped && end.alarm == Alarm::kNone && !reset_;
 }
 
-void Controller::probe(const Accepted& line) {
-  if (machine_.probe_touches() != line.block.probe_away) return raise(Alarm::kProbeInitial);
+// Whether the line goes on. A probe's alarm leaves no line without its answer, as in Grbl.
+bool Controller::probe(const Accepted& line) {
+  if (machine_.probe_touches() != line.block.probe_away) {
+    raise(Alarm::kProbeInitial);
+    answer(Status::kOk);
+    return false;
+  }
   probed_ = {};
-  if (!run_alone(line)) return;
+  if (!run_alone(line)) return false;
   interpreter_.stand(machine_.look().at);
   if (!probed_.tripped) probed_.at = interpreter_.place();
+  const bool missed = !probed_.tripped && line.block.probe_must_trip;
+  if (missed) raise(Alarm::kProbeMissed);
   say(probe_text());
-  if (!probed_.tripped && line.block.probe_must_trip) return raise(Alarm::kProbeMissed);
-  answer(Status::kOk);
+  if (missed) answer(Status::kOk);
+  return !missed;
 }
 
 void Controller::raise(Alarm alarm, const std::string& message) {
@@ -226,7 +237,7 @@ void Controller::raise(Alarm alarm, const std::string& message) {
   }
   pending_alarm_ = Alarm::kNone;
   drop_lines();
-  input_.clear();
+  if (alarm != Alarm::kProbeInitial && alarm != Alarm::kProbeMissed) input_.clear();
   interpreter_.stand(machine_.look().at);
   state_ = State::kAlarm;
   say(fmt::format("ALARM:{}", static_cast<int>(alarm)));
@@ -242,10 +253,16 @@ void Controller::finish_reset() {
   machine_.hold(false);
   interpreter_.reset();
   interpreter_.stand(machine_.look().at);
+  probed_ = {};
+  restore_overrides();
+  begin();
+}
+
+void Controller::restore_overrides() {
   feed_override_ = machine_.override_feed(100);
   machine_.override_rapids(rapid_override_ = 100);
   spindle_override_ = 100;
-  begin();
+  status_.overrides_changed();
 }
 
 }  // namespace trammel::grbl

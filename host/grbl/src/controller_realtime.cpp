@@ -64,6 +64,7 @@ void Controller::cancel_jog() {
 
 void Controller::request_hold(State state) {
   if (state_ == State::kAlarm || state_ == State::kCheck || state_ == State::kSleep || state_ == State::kHome) return;
+  if (state == State::kDoor) say("[MSG:Check Door]");
   if (state_ == State::kJog) return cancel_jog();
   if (!held()) before_hold_ = state_;
   if (!held() || state == State::kDoor) state_ = state;

@@ -70,7 +70,6 @@ void Controller::report() {
     const auto axis = shape_.axis(letter);
     if (axis && (live.limits >> *axis & 1U) != 0) report.pins += letter;
   }
-  if (state_ == State::kDoor) report.pins += 'D';
   report.feed_override = static_cast<int>(feed_override_);
   report.rapid_override = static_cast<int>(rapid_override_);
   report.spindle_override = spindle_override_;
@@ -90,8 +89,9 @@ std::string Controller::offsets_text() const {
   for (const int kind : {54, 55, 56, 57, 58, 59, 28, 30, 92}) {
     text += fmt::format("[G{}:{}]\r\n", kind, coordinates_text(interpreter_.offset(kind)));
   }
-  const double length = interpreter_.modal().tool_length;
-  text += fmt::format("[TLO:{:.3f}]\r\n", settings_.flag(13) ? length / kInch : length);
+  const bool inches = settings_.flag(13);
+  const double length = interpreter_.modal().tool_length / (inches ? kInch : 1);
+  text += fmt::format("[TLO:{:.{}f}]\r\n", length, inches ? 4 : 3);
   return text + probe_text();
 }
 

@@ -4,45 +4,61 @@
 #include <cstdlib>
 
 #include "trammel/grbl/controller.hpp"
+#include "words.hpp"
 
 namespace trammel::grbl {
+namespace {
+
+// What begins as one of Grbl's commands and is none is error 3, other text error 2.
+bool begins_command(char c) { return c == '#' || c == 'I' || c == 'R' || c == 'S'; }
+
+}  // namespace
 
 void Controller::system(const std::string& line) {
   const Status status = system_status(line);
-  const bool homing_failed = line.rfind("$H", 0) == 0 && status == Status::kOk && state_ == State::kAlarm;
-  if (!homing_failed && !reset_) answer(status);
+  if (!reset_) answer(status);
 }
 
 Status Controller::system_status(const std::string& line) {
-  if (line == "$") {
-    say("[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x]");
-    return Status::kOk;
+  const bool still = !executing_ && queue_.empty();
+  const bool waits = still && (state_ == State::kIdle || state_ == State::kAlarm);
+  switch (line.size() == 1 ? '\0' : line[1]) {
+    case '\0':
+      say("[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x]");
+      return Status::kOk;
+    case '$':
+    case 'G':
+    case 'C':
+    case 'X':
+      return line.size() == 2 ? short_status(line[1]) : Status::kInvalidStatement;
+    case 'J':
+      return state_ == State::kIdle || state_ == State::kJog ? Status::kInvalidStatement : Status::kNotIdle;
+    default:
+      return waits ? still_status(line) : Status::kNotIdle;
   }
-  if (line == "$G") {
+}
+
+Status Controller::short_status(char what) {
+  if (what == 'C') return toggle_check();
+  if (what == 'X') return unlock();
+  if (what == 'G') {
     say(parser_state(interpreter_.modal(), settings_.flag(13)));
     return Status::kOk;
   }
-  const bool still = !executing_ && queue_.empty();
-  if (!still || (state_ != State::kIdle && state_ != State::kAlarm && state_ != State::kCheck)) return Status::kNotIdle;
-  return still_status(line);
+  if (state_ == State::kRun) return Status::kNotIdle;
+  for (const std::string& setting : settings_.lines()) say(setting);
+  return Status::kOk;
 }
 
 // Of a machine that stands.
 Status Controller::still_status(const std::string& line) {
-  if (line == "$C") return toggle_check();
-  if (state_ == State::kCheck) return Status::kNotIdle;
-  if (line == "$X") return unlock();
-  if (line == "$$") {
-    for (const std::string& setting : settings_.lines()) say(setting);
-    return Status::kOk;
-  }
   if (line == "$#") {
     say(offsets_text());
     return Status::kOk;
   }
   if (line == "$I") {
     say(fmt::format("[VER:1.1h.20190825:{}]", settings_.build_text()));
-    say(fmt::format("[OPT:VMNH,{},{}]", kPlannerBlocks, kReceiveBuffer));
+    say(fmt::format("[OPT:VNMH,{},{}]", kPlannerBlocks, kReceiveBuffer));
     return Status::kOk;
   }
   if (line == "$SLP") {
@@ -61,17 +77,19 @@ Status Controller::still_status(const std::string& line) {
 }
 
 Status Controller::set_line(const std::string& line) {
-  const std::size_t equal = line.find('=');
-  if (equal == std::string::npos || equal == 1) return Status::kInvalidStatement;
-  const std::string number = line.substr(1, equal - 1);
-  const std::string value = line.substr(equal + 1);
-  char* end = nullptr;
-  const double setting = std::strtod(value.c_str(), &end);
-  if (number.find_first_not_of("0123456789") != std::string::npos || number.size() > 3)
+  std::size_t at = 1;
+  std::string number;
+  std::string value;
+  if (!read_number(line, at, number)) {
+    return begins_command(line[1]) ? Status::kInvalidStatement : Status::kBadNumber;
+  }
+  if (at >= line.size() || line[at] != '=') return Status::kInvalidStatement;
+  if (!read_number(line, ++at, value)) return Status::kBadNumber;
+  if (at != line.size() || number.find_first_not_of("0123456789") != std::string::npos || number.size() > 3) {
     return Status::kInvalidStatement;
-  if (value.empty() || *end != '\0') return Status::kBadNumber;
+  }
   const int key = std::atoi(number.c_str());
-  const Status status = settings_.set(key, setting);
+  const Status status = settings_.set(key, std::strtod(value.c_str(), nullptr));
   if (status == Status::kOk && Settings::changes_machine(key)) apply_settings();
   return status;
 }
@@ -87,7 +105,9 @@ Status Controller::startup_line(const std::string& line) {
     for (std::size_t n = 0; n < Settings::kStartupLines; ++n) say(fmt::format("$N{}={}", n, settings_.startup(n)));
     return Status::kOk;
   }
-  if (line.size() < 4 || line[3] != '=' || (line[2] != '0' && line[2] != '1')) return Status::kInvalidStatement;
+  if (state_ != State::kIdle) return Status::kNotIdle;
+  if (line[2] < '0' || line[2] > '9') return Status::kBadNumber;
+  if (line.size() < 4 || line[3] != '=' || line[2] > '1') return Status::kInvalidStatement;
   const std::string text = line.substr(4);
   Block block;
   if (const Status status = parse_block(text, interpreter_.modal(), interpreter_.letters(), block);
@@ -105,6 +125,9 @@ void Controller::run_startup() {
     if (line.empty()) continue;
     write_(">" + line + ":");
     take_code(line);
+    while (alone_ && !queue_.empty()) run_section();
+    if (alone_) execute();
+    if (held() || state_ == State::kAlarm) return;
   }
 }
 
@@ -124,6 +147,8 @@ Status Controller::restore(char what) {
   }
   apply_settings();
   say("[MSG:Restoring defaults]");
+  answer(Status::kOk);
+  reset_ = true;  // as Grbl
   return Status::kOk;
 }
 
@@ -150,8 +175,7 @@ Status Controller::unlock() {
   shape_ = machine_.machine();
   interpreter_.stand(machine_.look().at);
   say("[MSG:Caution: Unlocked]");
-  state_ = State::kIdle;
-  run_startup();
+  state_ = State::kIdle;  // without the startup lines, as Grbl: they may move the machine
   return Status::kOk;
 }
 
@@ -173,7 +197,7 @@ Status Controller::home(const std::string& line) {
   shape_ = machine_.machine();
   interpreter_.stand(machine_.look().at);
   ended(end);
-  if (end.alarm == Alarm::kNone) run_startup();
+  if (end.alarm == Alarm::kNone && axes.empty()) run_startup();
   return Status::kOk;
 }
 

@@ -128,7 +128,7 @@ Status Interpreter::read(std::string_view line, Block& block) {
   gcode::Coordinates place = place_;
   std::map<int, double> parameters;
   if (const Status status = follow(block.text, modal_, place, parameters); status != Status::kOk) return status;
-  if (block.moves && !block.dwell) {
+  if (block.moves) {
     if (const Status status = check_limits(block.text); status != Status::kOk) return status;
   }
   place_ = place;

@@ -3,20 +3,16 @@
 #include <fmt/format.h>
 
 namespace trammel::grbl {
-namespace {
 
-constexpr int kTenths = 10;
-
-std::string motion_word(int tenths) {
+std::string g_word(int tenths) {
+  constexpr int kTenths = 10;
   return tenths % kTenths == 0 ? fmt::format("G{}", tenths / kTenths)
                                : fmt::format("G{}.{}", tenths / kTenths, tenths % kTenths);
 }
 
-}  // namespace
-
 std::string parser_state(const Modal& modal, bool report_inches) {
   std::string text =
-      fmt::format("[GC:{} G{} G{} G{} G{} G{} M{}", motion_word(modal.motion), modal.system, modal.plane,
+      fmt::format("[GC:{} G{} G{} G{} G{} G{} M{}", g_word(modal.motion), modal.system, modal.plane,
                   modal.inches ? 20 : 21, modal.absolute ? 90 : 91, modal.inverse_time ? 93 : 94, modal.spindle);
   if (modal.mist) text += " M7";
   if (modal.flood) text += " M8";

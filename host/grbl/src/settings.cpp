@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 
 namespace trammel::grbl {
 namespace {
@@ -22,8 +26,34 @@ const std::map<int, double>& grbl_defaults() {
   return kDefaults;
 }
 
-// Settings that are switches or masks.
-bool is_whole(int number) { return number != 11 && number != 12 && !(number >= 24 && number <= 31) && number < 100; }
+// Settings that are switches, masks or milliseconds.
+bool is_whole(int number) {
+  constexpr std::array<int, 7> kFractions{11, 12, 24, 25, 27, 30, 31};
+  return number < 100 && std::find(kFractions.begin(), kFractions.end(), number) == kFractions.end();
+}
+
+bool is_shown_whole(int number) { return is_whole(number) || number == 30 || number == 31; }
+
+// The whole text as one finite number.
+std::optional<double> number_in(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0' || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::optional<int> key_in(const std::string& text) {
+  const bool digits = !text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos;
+  return digits ? std::optional<int>(std::stoi(text)) : std::nullopt;
+}
+
+Status check_value(int number, double value) {
+  if (value < 0) return Status::kNegativeValue;
+  if (number == 0 && value < 3) return Status::kStepPulseTooShort;
+  const bool positive = number >= 100 && number < 130;
+  const bool good = std::isfinite(value) && value <= 1e9 && !(positive && value == 0);
+  return good ? Status::kOk : Status::kInvalidStatement;
+}
 
 double travel_of(const machine::MachineAxis& axis) {
   return std::isfinite(axis.min) && std::isfinite(axis.max) ? axis.max - axis.min : 0;
@@ -44,7 +74,7 @@ std::map<int, double> defaults_of(const machine::Machine& machine) {
     const machine::MachineAxis axis = index ? machine.axes[*index] : machine::MachineAxis{};
     values[0] = index && n == 0 ? axis.step_length_ns / 1000 : values[0];
     if (axis.inverted) values[3] += 1U << n;
-    if (travel_of(axis) > 0) values[20] = 1;
+    if (std::isfinite(axis.min) || std::isfinite(axis.max)) values[20] = 1;
     if (axis.homing) values[22] = 1;
     values[100 + at] = axis.steps_per_mm;
     values[110 + at] = axis.max_velocity * kMinute;
@@ -54,7 +84,7 @@ std::map<int, double> defaults_of(const machine::Machine& machine) {
   return values;
 }
 
-void apply_axis(machine::MachineAxis& axis, std::size_t n, const std::map<int, double>& changed) {
+void apply_axis(machine::MachineAxis& axis, std::size_t n, const std::map<int, double>& changed, bool limits) {
   const auto change = [&](int number, auto set) {
     const auto found = changed.find(number);
     if (found != changed.end()) set(found->second);
@@ -74,11 +104,9 @@ void apply_axis(machine::MachineAxis& axis, std::size_t n, const std::map<int, d
       axis.min = axis.max - travel;
     }
   });
-  change(20, [&](double on) {
-    if (on != 0) return;
-    axis.min = -std::numeric_limits<double>::infinity();
-    axis.max = std::numeric_limits<double>::infinity();
-  });
+  if (limits) return;
+  axis.min = -std::numeric_limits<double>::infinity();
+  axis.max = std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -95,8 +123,8 @@ double Settings::value(int number) const {
 }
 
 std::string Settings::text_of(int number) const {
-  return is_whole(number) ? fmt::format("${}={:.0f}", number, value(number))
-                          : fmt::format("${}={:.3f}", number, value(number));
+  return is_shown_whole(number) ? fmt::format("${}={:.0f}", number, value(number))
+                                : fmt::format("${}={:.3f}", number, value(number));
 }
 
 std::vector<std::string> Settings::lines() const {
@@ -106,12 +134,10 @@ std::vector<std::string> Settings::lines() const {
 }
 
 Status Settings::set(int number, double value) {
-  if (defaults_.count(number) == 0) return Status::kInvalidStatement;
   if (value < 0) return Status::kNegativeValue;
-  if (number == 0 && value < 3) return Status::kStepPulseTooShort;
+  if (defaults_.count(number) == 0) return Status::kInvalidStatement;
+  if (const Status status = check_value(number, value); status != Status::kOk) return status;
   if (number == 20 && value != 0 && !flag(22)) return Status::kSoftLimitsNeedHoming;
-  const bool positive = number >= 100 && number < 130;
-  if ((positive && value == 0) || !std::isfinite(value) || value > 1e9) return Status::kInvalidStatement;
   changed_[number] = is_whole(number) ? std::floor(value) : value;
   if (number == 22 && value == 0) changed_[20] = 0;
   apply();
@@ -156,7 +182,7 @@ void Settings::apply() {
   machine_ = base_;
   for (std::size_t n = 0; n < kAxes.size(); ++n) {
     const auto index = machine_.axis(kAxes[n]);
-    if (index) apply_axis(machine_.axes[*index], n, changed_);
+    if (index) apply_axis(machine_.axes[*index], n, changed_, flag(20));
   }
   if (changed_.count(11) != 0) machine_.motion.junction_deviation = changed_.at(11);
   if (changed_.count(30) != 0 && changed_.at(30) > 0) machine_.outputs.max_s = changed_.at(30);
@@ -165,31 +191,40 @@ void Settings::apply() {
 
 void Settings::read() {
   std::ifstream in(file_);
+  std::error_code unknown;
+  if (!in && std::filesystem::exists(file_, unknown)) throw std::runtime_error(file_ + ": cannot be read");
   for (std::string line; std::getline(in, line);) {
-    const std::size_t equal = line.find('=');
-    const auto wrong = [&] {
-      return std::runtime_error(fmt::format("{}: not a setting: {}", file_, line.substr(0, 80)));
-    };
-    if (line.size() < 2 || equal == std::string::npos) throw wrong();
-    const std::string name = line.substr(1, equal - 1);
-    const std::string value = line.substr(equal + 1);
-    if (line[0] == '$' && (name == "N0" || name == "N1")) {
-      startup_.at(name == "N0" ? 0 : 1) = value;
-    } else if (line[0] == '$' && name == "I") {
-      build_text_ = value;
-    } else {
-      char* end = nullptr;
-      const double number = std::strtod(value.c_str(), &end);
-      const int key = std::atoi(name.c_str());
-      const bool known = line[0] == '#' || (line[0] == '$' && defaults_.count(key) != 0);
-      if (end == value.c_str() || !known) throw wrong();
-      (line[0] == '#' ? parameters_ : changed_)[key] = number;
+    if (!read_line(line)) {
+      throw std::runtime_error(fmt::format("{}: not a setting: {}", file_, line.substr(0, 80)));
     }
   }
+  if (in.bad()) throw std::runtime_error(file_ + ": cannot be read");
+}
+
+bool Settings::read_line(const std::string& line) {
+  const std::size_t equal = line.find('=');
+  if (equal == std::string::npos || equal < 2 || (line[0] != '$' && line[0] != '#')) return false;
+  const std::string name = line.substr(1, equal - 1);
+  const std::string value = line.substr(equal + 1);
+  if (line[0] == '$' && (name == "N0" || name == "N1")) {
+    startup_.at(name == "N0" ? 0 : 1) = value;
+    return true;
+  }
+  if (line[0] == '$' && name == "I") {
+    build_text_ = value;
+    return true;
+  }
+  const auto key = key_in(name);
+  const auto number = number_in(value);
+  if (!key || !number) return false;
+  const bool setting = line[0] == '$';
+  if (setting && (defaults_.count(*key) == 0 || check_value(*key, *number) != Status::kOk)) return false;
+  (setting ? changed_ : parameters_)[*key] = *number;
+  return true;
 }
 
 // The old file stays whole where the new one cannot be written.
-void Settings::write() const {
+void Settings::write() {
   if (file_.empty()) return;
   const std::string fresh = file_ + ".new";
   std::ofstream out(fresh);
@@ -201,7 +236,7 @@ void Settings::write() const {
   if (!build_text_.empty()) out << fmt::format("$I={}\n", build_text_);
   out.close();
   if (!out || std::rename(fresh.c_str(), file_.c_str()) != 0) {
-    throw std::runtime_error(fmt::format("{}: the settings cannot be written", file_));
+    trouble_ = fmt::format("{}: the settings cannot be written; they hold until the end", file_);
   }
 }
 

@@ -11,6 +11,24 @@
 
 namespace trammel::grbl {
 
+// As Grbl has them, each a bit of Words::groups.
+enum Group : unsigned {
+  kNonModalGroup,
+  kMotionGroup,
+  kPlane,
+  kDistance,
+  kArcDistance,
+  kFeedMode,
+  kUnits,
+  kCutter,
+  kToolLengthGroup,
+  kSystemGroup,
+  kControl,
+  kProgram,
+  kSpindle,
+  kCoolant
+};
+
 struct Words {
   enum class Command { kNone, kMotion, kNonModal, kToolLength };
 
@@ -24,10 +42,8 @@ struct Words {
   bool tool_length = false;            // G43.1
   bool outputs = false;                // M3 .. M5, M7 .. M9
   bool system = false;                 // G54 .. G59
-  bool plane = false;
-  bool feed_mode = false;
-  unsigned groups = 0;       // bits of the groups met
-  std::vector<int> g_codes;  // tenths
+  unsigned groups = 0;                 // bit n: Group n was met
+  std::vector<int> g_codes;            // tenths
   std::vector<int> m_codes;
 
   bool has(char letter) const { return values.count(letter) != 0; }
@@ -36,8 +52,10 @@ struct Words {
   std::string letters() const;
 };
 
+// Sign, digits, one point; no exponent. `at`: moved behind it.
+bool read_number(std::string_view line, std::size_t& at, std::string& text);
 Status read_words(std::string_view line, std::string_view axes, Words& words);
 // G and M codes, F, S, T and G43.1's Z.
-Status apply_words(const Words& words, Modal& modal);
+void apply_words(const Words& words, Modal& modal);
 
 }  // namespace trammel::grbl

@@ -41,9 +41,7 @@ class Controller {
 
   State state() const { return state_; }
   // Nothing is under way or waits to be done.
-  bool idle() const {
-    return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes();
-  }
+  bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes(); }
 
  private:
   friend class SectionLines;
@@ -61,19 +59,21 @@ class Controller {
   void cancel_jog();
   void finish_reset();
   void finish_jog();
+  void restore_overrides();
   void raise(Alarm alarm, const std::string& message = {});
   void drop_lines();
 
   // Whether the line is done with; else it waits for what is under way.
-  bool take(const std::string& line);
+  bool take(const std::string& line, bool at_rest = false);
   void take_code(const std::string& line);
   void take_jog(const std::string& line);
   Accepted accepted() const;
   void execute();
   bool run_alone(const Accepted& line);
-  void probe(const Accepted& line);
+  bool probe(const Accepted& line);
   void system(const std::string& line);
   Status system_status(const std::string& line);
+  Status short_status(char what);
   Status still_status(const std::string& line);
   Status set_line(const std::string& line);
   Status startup_line(const std::string& line);
@@ -108,7 +108,6 @@ class Controller {
   std::optional<std::string> waiting_;  // a line that is taken when all before it is done
   std::optional<Accepted> alone_;       // an accepted one that is answered when it is done
   bool answer_at_resume_ = false;       // of M0
-  bool from_work_ = false;              // the line is not from serve()
   bool executing_ = false;              // within a motion of the machine
   bool executing_alone_ = false;        // of a line that is answered when it is done
   bool reset_ = false;

@@ -37,6 +37,7 @@ enum class Status {
   kNoOffsetsInPlane = 35,
   kUnusedWords = 36,
   kToolLengthAxis = 37,
+  kValueTooLarge = 38,
 };
 
 enum class Alarm {

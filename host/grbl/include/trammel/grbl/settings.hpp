@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "trammel/grbl/numbers.hpp"
@@ -38,6 +39,9 @@ class Settings {
   const std::string& build_text() const { return build_text_; }
   void set_build_text(const std::string& text);
 
+  // Why what was changed last holds until the end alone: the file could not be written. Empty: it is kept.
+  std::string take_trouble() { return std::exchange(trouble_, {}); }
+
   // $RST=$: the machine file's again.
   void restore();
 
@@ -45,7 +49,8 @@ class Settings {
 
  private:
   void read();
-  void write() const;
+  bool read_line(const std::string& line);
+  void write();
   void apply();
   std::string text_of(int number) const;
 
@@ -57,6 +62,7 @@ class Settings {
   std::map<int, double> parameters_;
   std::array<std::string, kStartupLines> startup_;
   std::string build_text_;
+  std::string trouble_;
 };
 
 }  // namespace trammel::grbl
