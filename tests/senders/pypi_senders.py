@@ -12,7 +12,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 
 ORDER = re.compile(r"path: (\d+) steps.*of axes and directions ([0-9a-f]{16})")
@@ -67,37 +66,13 @@ def pygrbl_streamer(port, program):
     streamer.disconnect()
 
 
-def grbl_streamer(port, program):
-    from grbl_streamer import GrblStreamer
-    done = threading.Event()
-
-    def told(event, *_):
-        if event == "on_job_completed":
-            done.set()
-
-    streamer = GrblStreamer(told)
-    streamer.setup_logging()
-    streamer.cnect(port, 115200)
-    time.sleep(1)
-    streamer.poll_start()
-    # By counting bytes it leaves out or doubles a line now and then (two of its threads send): by its own record of what
-    # it wrote, in 3 of 12 jobs.
-    streamer.incremental_streaming = True
-    streamer.load_file(program)
-    streamer.job_run()
-    if not done.wait(LONGEST):
-        raise RuntimeError("its job does not end")
-    streamer.disconnect()
-
-
 def simple_gcode_sender(port, program):
     # A program of its own, which ends when it has sent all.
     sender = pathlib.Path(sys.executable).parent / "sgs"
     subprocess.run([sender, program, port], check=True, timeout=LONGEST, stdout=subprocess.DEVNULL)
 
 
-SENDERS = {"pygrbl-streamer": pygrbl_streamer, "grbl-streamer": grbl_streamer,
-           "simple-gcode-sender": simple_gcode_sender}
+SENDERS = {"pygrbl-streamer": pygrbl_streamer, "simple-gcode-sender": simple_gcode_sender}
 
 
 def await_idle(port):
@@ -113,7 +88,6 @@ def await_idle(port):
 def main():
     trammel, program, *names = sys.argv[1:]
     try:
-        import grbl_streamer  # noqa: F401
         import pygrbl_streamer  # noqa: F401
     except ImportError as error:
         print(f"{error}: scripts/test installs requirements-senders.txt")
