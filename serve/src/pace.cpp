@@ -12,6 +12,7 @@ using std::chrono::duration;
 
 constexpr std::uint64_t kPiece = 5000;  // clocks; the Verilated card takes some ms for them
 constexpr double kMaxBehind = 0.5;      // seconds
+constexpr double kLeast = 0.0005;       // s of the card, that are worth running for: else the server sleeps
 constexpr auto kTellAgain = 10s;
 
 }  // namespace
@@ -35,7 +36,8 @@ std::uint64_t CardServer::Pace::due(std::uint64_t wanted) {
     return wanted;
   }
   const double clocks = (life - card) * settings_.clock_hz;
-  return clocks <= 0 ? 0 : std::min(wanted, static_cast<std::uint64_t>(clocks));
+  if (clocks < std::min(static_cast<double>(wanted), kLeast * settings_.clock_hz)) return 0;
+  return std::min(wanted, static_cast<std::uint64_t>(clocks));
 }
 
 void CardServer::Pace::run(std::uint64_t clocks) {

@@ -41,6 +41,12 @@ class Interpreter final : public Predefined {
  public:
   Interpreter(const machine::Machine& machine, const Coordinates& start);
 
+  // As ReaderOptions says.
+  void begin_spindle(int code, double speed) {
+    modes_.spindle = code;
+    modes_.spindle_speed = speed;
+  }
+
   enum class Outcome { kGoesOn, kEnded, kFailed };
   // Appends the line's motions. After a failure, of which `problem` tells, the state means nothing.
   Outcome execute(const WordSet& words, std::size_t line, LineMotions& motions, Problem& problem);

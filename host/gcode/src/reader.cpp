@@ -31,6 +31,7 @@ class Reader::Impl {
         parameters_(interpreter_),
         options_(options),
         left_out_(options.left_out) {
+    interpreter_.begin_spindle(options.spindle, options.spindle_speed);
     for (const auto& [number, value] : options.parameters) {
       parameters_.preset(number, value);
       interpreter_.preset(number, value);

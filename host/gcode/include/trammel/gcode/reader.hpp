@@ -44,6 +44,9 @@ struct ReaderOptions {
   bool name_all_unknown = false;
   // Numbered parameters before the first line: #1 to #5000, offsets and homes as LinuxCNC numbers them.
   std::map<int, double> parameters;
+  // What holds before the first line: 30, 40 or 50 for M3, M4 or M5, whose outputs are so already, and S.
+  int spindle = 50;
+  double spindle_speed = 0;
 };
 
 // Not thread-safe; allocates nothing after its first lines.
