@@ -163,7 +163,8 @@ module drive_enable #(
   end
 
   assign waiting_o  = wait_o && moves_i;
-  assign disabled_o = state_q != OFF && state_d == OFF ? axes_q : '0;
+  // In the clock before OFF; by way of the next state it would be one of the card's longest ways.
+  assign disabled_o = state_q != OFF && (emergency_i || (state_q == BRAKE && none_left)) ? axes_q : '0;
 
   logic unused;  // absent axes and faults
   assign unused = &{1'b0, data, fault_i};

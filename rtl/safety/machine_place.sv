@@ -1,10 +1,14 @@
 // Which axes stand where the host believes, POSITION_VALID, and which of them were homed, HOMED: the register PLACE. The
 // host writes both by SET_PLACE; the card clears them.
 //
-// An axis loses both at a fault of its drive; at a cut while it moves, and as its drive is disabled, unless KEEPS_PLACE names it. It moves from its
-// first step on until neither a piece nor a direct move is under way; at the ratio 0 it stands. So the cut that follows
-// a hold or the end of a ramp takes nothing away. A loss wins over a write in its clock: the host wrote before it could
-// know. A write in a later clock counts, so the host writes while the axes stand, when no cut takes anything away.
+// An axis loses both at a fault of its drive; at a cut while it moves, and as its drive is disabled, unless KEEPS_PLACE
+// names it. It moves from its first step on until neither a piece nor a direct move is under way; at the ratio 0 it
+// stands. So the cut that follows a hold or the end of a ramp takes nothing away.
+//
+// An event is judged a clock later, from flip-flops: it comes through the emergency stop and the sequence of the drives,
+// which is one of the card's longest ways. So a loss wins over a write in its clock and over one in the next: the host
+// wrote before it could know. KEEPS_PLACE counts for an event in the clock in which it is written. A write in a later
+// clock counts, so the host writes while the axes stand, when no cut takes anything away.
 `default_nettype none
 
 module machine_place #(
@@ -25,24 +29,31 @@ module machine_place #(
   logic [Axes-1:0] homed_q;
   logic [Axes-1:0] keeps_q;
   logic [Axes-1:0] moved_q;  // a step since the motion under way began
-  logic [Axes-1:0] moved;
+  logic [Axes-1:0] drive_fault_q;
+  logic [Axes-1:0] disabled_q;
+  logic            cut_q;  // at a ratio that was not 0
   logic [Axes-1:0] lost;
   logic [Axes-1:0] written;
   logic [    31:0] data;
 
   assign data = setting_bus_pkg::data(setting_i);
   assign written = setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_SET_PLACE) ? data[16+:Axes] : '0;
-  assign moved = runs_i ? moved_q | step_i : '0;
-  assign lost = drive_fault_i | ((disabled_i | (cut_i && !at_rest_i ? moved : '0)) & ~keeps_q);
+  assign lost = drive_fault_q | ((disabled_q | (cut_q ? moved_q : '0)) & ~keeps_q);
   assign place_o = {8'(homed_q), 8'(valid_q)};
 
   always_ff @(posedge clk_i) begin
-    moved_q <= moved;
+    moved_q <= runs_i ? moved_q | step_i : '0;
+    drive_fault_q <= drive_fault_i;
+    disabled_q <= disabled_i;
+    cut_q <= cut_i && !at_rest_i;
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_KEEPS_PLACE)) keeps_q <= data[Axes-1:0];
     valid_q <= ((valid_q & ~written) | (data[0] ? written : '0)) & ~lost;
     homed_q <= ((homed_q & ~written) | (data[1] ? written : '0)) & ~lost;
     if (rst_i) begin
       moved_q <= '0;
+      drive_fault_q <= '0;
+      disabled_q <= '0;
+      cut_q <= 1'b0;
       keeps_q <= card_map_pkg::RESET_KEEPS_PLACE[Axes-1:0];
       valid_q <= '0;
       homed_q <= '0;

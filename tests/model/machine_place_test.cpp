@@ -27,10 +27,16 @@ struct Machine {
     clock();
     in.step = 0;
   }
-  std::uint32_t after_cut() {
+  void cut() {
     in.cut = true;
     clock();
     in.cut = false;
+  }
+  // A loss shows two clocks after its event.
+  std::uint32_t after_cut() {
+    cut();
+    in.step = 0;
+    clock();
     return place.place();
   }
 };
@@ -84,17 +90,40 @@ TEST(MachinePlace, KeepsPlaceNamesAxesThatOutliveACut) {
   EXPECT_EQ(machine.after_cut(), 0x0D0DU);
   machine.in.drives = 1;
   machine.clock();
+  machine.clock();
   EXPECT_EQ(machine.place.place(), 0x0C0CU) << "not a fault of the drive";
 }
 
-TEST(MachinePlace, ALossWinsOverAWriteInItsClock) {
+TEST(MachinePlace, KeepsPlaceCountsForACutInItsClock) {
+  Machine machine;
+  machine.in.runs = true;
+  machine.step(0x3);
+  machine.in.cut = true;
+  machine.set(reg::kKeepsPlace, 0x1);
+  machine.in.cut = false;
+  machine.clock();
+  EXPECT_EQ(machine.place.place(), 0x0D0DU);
+}
+
+TEST(MachinePlace, ALossWinsOverAWriteInItsClockAndInTheNext) {
   Machine machine;
   machine.in.drives = 8;
   machine.set(reg::kSetPlace, 0x000F0003);
-  EXPECT_EQ(machine.place.place(), 0x0707U);
   machine.in.drives = 0;
   machine.set(reg::kSetPlace, 0x000F0003);
+  EXPECT_EQ(machine.place.place(), 0x0707U);
+  machine.set(reg::kSetPlace, 0x000F0003);
   EXPECT_EQ(machine.place.place(), kAll);
+}
+
+TEST(MachinePlace, ALossShowsTwoClocksAfterItsEvent) {
+  Machine machine;
+  machine.in.runs = true;
+  machine.step(0x5);
+  machine.cut();
+  EXPECT_EQ(machine.place.place(), kAll);
+  machine.clock();
+  EXPECT_EQ(machine.place.place(), 0x0A0AU);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // Golden model of the machine's place: which axes stand where the host believes (POSITION_VALID) and which were homed
 // (HOMED). The host writes both; an axis loses them at a fault of its drive; at a cut while it moves, and as its drive
 // is disabled, unless KEEPS_PLACE names it. It moves from its first step on while a piece or a direct move is under
-// way, at a ratio that is not 0. A bit of a mask is an axis. Not thread-safe; no errors are reported.
+// way, at a ratio that is not 0. What takes a place is judged a clock after it comes. A bit of a mask is an axis. Not
+// thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -28,17 +29,25 @@ class MachinePlace {
     std::uint8_t homed = 0;
     std::uint8_t keeps = 0;
     std::uint8_t moved = 0;  // has made a step since the motion under way began
+    // Of the clock before.
+    std::uint8_t drives = 0;
+    std::uint8_t disabled = 0;
+    bool cut = false;  // at a ratio that was not 0
   };
 
   explicit MachinePlace(unsigned axes = card_map::kMaxAxes) : present_(static_cast<std::uint8_t>((1U << axes) - 1)) {}
 
-  // One rising edge. What comes in clock c shows at c + 1; a loss wins over a write in its clock.
+  // One rising edge. A write in clock c shows at c + 1, a loss at c + 2. So a loss wins over a write in its clock and
+  // over one in the next, and KEEPS_PLACE counts for it in the clock in which it is written.
   void clock(const Inputs& in) {
-    state_.moved = in.runs ? static_cast<std::uint8_t>(state_.moved | in.step) : std::uint8_t{0};
-    const std::uint8_t lost = lost_with(in);
+    const std::uint8_t lost = lost_now();
     if (in.setting.set) set(in.setting);
     state_.valid &= static_cast<std::uint8_t>(~lost);
     state_.homed &= static_cast<std::uint8_t>(~lost);
+    state_.moved = moved_with(in);
+    state_.drives = in.drives & present_;
+    state_.disabled = in.disabled & present_;
+    state_.cut = cuts(in);
   }
 
   const State& state() const { return state_; }
@@ -51,15 +60,20 @@ class MachinePlace {
   // With these inputs nothing changes, however many clocks pass.
   bool rests(const Inputs& in) const {
     const auto known = static_cast<std::uint8_t>(state_.valid | state_.homed);
-    const bool settled = in.runs ? (in.step & ~state_.moved) == 0 : state_.moved == 0;
-    return !in.setting.set && settled && (lost_with(in) & known) == 0;
+    const bool settled = moved_with(in) == state_.moved && (in.drives & present_) == state_.drives &&
+                         (in.disabled & present_) == state_.disabled && cuts(in) == state_.cut;
+    return !in.setting.set && settled && (lost_now() & known) == 0;
   }
 
  private:
-  std::uint8_t lost_with(const Inputs& in) const {
-    const bool stops = in.cut && !in.at_rest && in.runs;
-    const unsigned moving = stops ? state_.moved | in.step : 0U;
-    return static_cast<std::uint8_t>(in.drives | ((moving | in.disabled) & ~state_.keeps));
+  static bool cuts(const Inputs& in) { return in.cut && !in.at_rest; }
+  std::uint8_t moved_with(const Inputs& in) const {
+    return in.runs ? static_cast<std::uint8_t>(state_.moved | in.step) : std::uint8_t{0};
+  }
+  // By the events of the clock before.
+  std::uint8_t lost_now() const {
+    const unsigned stopped = state_.cut ? state_.moved : 0U;
+    return static_cast<std::uint8_t>(state_.drives | ((stopped | state_.disabled) & ~state_.keeps));
   }
 
   void set(const Setting& setting) {
