@@ -87,12 +87,23 @@ std::optional<std::string> Program::finish_loading() {
   return std::nullopt;
 }
 
-bool Program::start() {
+bool Program::check() {
   if (phase_ != Phase::kReady && phase_ != Phase::kDone && phase_ != Phase::kStopped) return false;
-  at_ = read_ = sent_ = 0;
+  rewind();
   reason_.clear();
-  phase_ = Phase::kRunning;
+  phase_ = Phase::kChecking;
   return true;
+}
+
+void Program::start() {
+  rewind();
+  phase_ = Phase::kRunning;
+}
+
+void Program::end_check(const std::string& reason) {
+  if (!checking()) return;
+  phase_ = Phase::kStopped;
+  reason_ = reason;
 }
 
 std::optional<Program::Line> Program::next() {

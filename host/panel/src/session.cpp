@@ -18,7 +18,8 @@ constexpr std::uint8_t kHold = '!';
 constexpr std::uint8_t kResume = '~';
 constexpr std::uint8_t kReset = 0x18;
 constexpr std::uint8_t kCancelJog = 0x85;
-constexpr int kHoming = 22;  // Grbl's setting
+constexpr int kHoming = 22;              // Grbl's setting
+constexpr unsigned kLinesChecked = 500;  // in one call of serve()
 constexpr std::size_t kNotesKept = 50;
 constexpr auto kHomedFresh = std::chrono::milliseconds(500);
 constexpr double kMinute = 60;
@@ -60,6 +61,7 @@ void PanelSession::left() {
   page_ = false;
   end_jog();
   if (program_.phase() == Program::Phase::kLoading) program_.unload();
+  program_.end_check("The page has gone");
   if (!program_.running() || !hold_when_gone_ || controller_.state() == State::kHold) return;
   note("The page has gone: the program is held.");
   realtime(kHold);
@@ -115,7 +117,7 @@ bool PanelSession::is_ready(const std::string& what) {
     note(fmt::format("{}: refused in an alarm. Recover or home first.", what), true);
     return false;
   }
-  if (program_.running() || controller_.state() != State::kIdle || !controller_.idle()) {
+  if (program_.running() || program_.checking() || controller_.state() != State::kIdle || !controller_.idle()) {
     note(fmt::format("{}: refused, the machine must stand and no program may run.", what), true);
     return false;
   }
@@ -125,7 +127,7 @@ bool PanelSession::is_ready(const std::string& what) {
 bool PanelSession::take_load(const Request& request) {
   if (request.what == "load") {
     const bool stands = controller_.state() == State::kIdle || controller_.state() == State::kAlarm;
-    if (program_.running() || !stands) return false;
+    if (program_.running() || program_.checking() || !stands) return false;
     program_.begin_loading(request.text);
     line_ = 0;
     return true;
@@ -141,9 +143,26 @@ bool PanelSession::take_load(const Request& request) {
 }
 
 void PanelSession::take_start() {
-  if (!is_ready("Start") || !program_.start()) return;
+  if (!is_ready("Start") || !program_.check()) return;
   line_ = 0;
-  note(fmt::format("{}: started.", program_.name()));
+  check_.emplace(controller_.interpreter());
+}
+
+// As the controller would read it, so that nothing moves for a program that it would refuse in the middle.
+void PanelSession::check_program() {
+  if (!program_.checking()) return;
+  for (unsigned n = 0; n < kLinesChecked; ++n) {
+    const std::optional<Program::Line> line = program_.next();
+    grbl::Block block;
+    const grbl::Status status = line ? check_->read(line->text, block) : grbl::Status::kOk;
+    if (status != grbl::Status::kOk) {
+      program_.end_check(fmt::format("Line {}: {}", line->number, error_text(static_cast<int>(status))));
+      return note(fmt::format("{}: not started. {}.", program_.name(), program_.stop_reason()), true);
+    }
+    if (line && !block.end) continue;
+    program_.start();
+    return note(fmt::format("{}: started.", program_.name()));
+  }
 }
 
 void PanelSession::take_zero(const Request& request) {
@@ -181,6 +200,7 @@ void PanelSession::realtime(std::uint8_t byte) {
 void PanelSession::stop() {
   jog_.reset();
   commands_.clear();
+  program_.end_check("Stopped by the operator");
   realtime(kReset);
 }
 
@@ -264,8 +284,9 @@ void PanelSession::feed_program() {
 void PanelSession::serve() {
   serve_jog();
   controller_.serve();
+  check_program();
   feed_program();
-  if (controller_.idle() || !program_.running()) return;
+  if (controller_.idle()) return;
   const int line = controller_.report_now().line;
   if (line > 0) line_ = static_cast<std::size_t>(line);
 }
@@ -304,6 +325,7 @@ void PanelSession::hear_line(const std::string& line) {
     sent_.clear();
     jog_.reset();
     note(alarm_text(alarm_.number), true);
+    program_.end_check(alarm_text(alarm_.number));
     program_.stop(alarm_text(alarm_.number));
   } else if (begins_with(line, "[MSG:") && line.back() == ']') {
     hear_message(line.substr(5, line.size() - 6));

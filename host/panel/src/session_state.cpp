@@ -26,6 +26,8 @@ const char* name_of(Program::Phase phase) {
       return "loading";
     case Program::Phase::kReady:
       return "ready";
+    case Program::Phase::kChecking:
+      return "checking";
     case Program::Phase::kRunning:
       return "running";
     case Program::Phase::kDone:
@@ -78,7 +80,7 @@ std::string PanelSession::state(std::uint64_t& told) {
   const grbl::Report report = controller_.report_now();
   const grbl::Live live = machine_.look();
   const machine::Machine& machine = machine_.machine();
-  const gcode::Coordinates offset = controller_.work_offset();
+  const gcode::Coordinates offset = controller_.interpreter().work_offset();
   json axes = json::array();
   for (std::size_t n = 0; n < machine.axes.size(); ++n) {
     axes.push_back({{"machine", rounded(live.at[n])},

@@ -86,12 +86,12 @@ function showAlarm(state) {
 function showProgram(program) {
   const line = program.line ? `line ${program.line} of ${program.lines}` : `${program.lines} lines`
   const words = {
-    none: 'No program.', loading: 'Loading …', ready: `${program.name}: ready, ${line}`, running: `${program.name}: ${line}`,
-    done: `${program.name}: done`, stopped: `${program.name}: stopped at ${line}. ${program.stop_reason}`,
+    none: 'No program.', loading: 'Loading …', ready: `${program.name}: ready, ${line}`, checking: `${program.name}: checking …`, running: `${program.name}: ${line}`,
+    done: `${program.name}: done`, stopped: `${program.name}: ${program.line ? `stopped at ${line}` : 'not started'}. ${program.stop_reason}`,
   }
   text('program-state', words[program.phase])
   byId('program-state').classList.toggle('bad', program.phase === 'stopped')
-  const there = ['ready', 'running', 'done', 'stopped'].includes(program.phase)
+  const there = ['ready', 'checking', 'running', 'done', 'stopped'].includes(program.phase)
   byId('progress').hidden = byId('program').hidden = !there
   byId('progress').value = program.phase === 'done' ? 1 : program.line / Math.max(program.lines, 1)
   if (there && program.version !== now.program) fetchProgram(program.version)
@@ -126,7 +126,7 @@ function enable() {
   const there = link.open && state !== null
   const kind = there ? kindOf(state) : 'away'
   const program = there ? state.program.phase : 'none'
-  const free = kind === 'stands' && program !== 'running'
+  const free = kind === 'stands' && !['checking', 'running'].includes(program)
   const set = (id, on) => { byId(id).disabled = !on }
   set('hold', kind === 'moves')
   set('resume', kind === 'held')
@@ -135,7 +135,7 @@ function enable() {
   for (const id of ['home', 'alarm-home']) set(id, there && now.hello.can_home && (free || kind === 'alarm'))
   byId('alarm-home').hidden = !now.hello?.can_home
   set('start', free && ['ready', 'done', 'stopped'].includes(program))
-  set('file', (free || kind === 'alarm') && program !== 'running')
+  set('file', free || kind === 'alarm')
   for (const { letter } of now.axes) set(`zero-${letter}`, free)
   for (const button of byId('pad').children) button.disabled = !(free || state?.state === 'Jog') || !there
 }

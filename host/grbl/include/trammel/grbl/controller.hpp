@@ -42,8 +42,8 @@ class Controller {
   State state() const { return state_; }
   // What the answer to '?' says.
   Report report_now();
-  // Machine coordinate minus work coordinate, by axis of the machine.
-  gcode::Coordinates work_offset() const { return interpreter_.work_offset(); }
+  // Behind the lines that were accepted so far.
+  const Interpreter& interpreter() const { return interpreter_; }
   // Nothing is under way or waits to be done.
   bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_; }
 

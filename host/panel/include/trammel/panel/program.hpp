@@ -11,7 +11,7 @@ namespace trammel::panel {
 
 class Program {
  public:
-  enum class Phase { kNone, kLoading, kReady, kRunning, kDone, kStopped };
+  enum class Phase { kNone, kLoading, kReady, kChecking, kRunning, kDone, kStopped };
 
   // The largest program, bytes.
   static constexpr std::size_t kMost = std::size_t{32} << 20U;
@@ -28,7 +28,11 @@ class Program {
   std::optional<std::string> finish_loading();
   void unload();
 
-  bool start();
+  // From the first line on: next() gives the lines to be checked, then, after start(), to be run. False: no program.
+  bool check();
+  void start();
+  // Nothing has moved yet.
+  void end_check(const std::string& reason);
   // The next line that is not empty; nothing behind the last one.
   std::optional<Line> next();
   // M2 or M30 was done: the lines behind it are not sent.
@@ -37,6 +41,7 @@ class Program {
   void stop(const std::string& reason);
 
   Phase phase() const { return phase_; }
+  bool checking() const { return phase_ == Phase::kChecking; }
   bool running() const { return phase_ == Phase::kRunning; }
   bool sent_all() const { return at_ >= text_.size(); }
   const std::string& name() const { return name_; }
@@ -49,6 +54,7 @@ class Program {
 
  private:
   std::string_view take();
+  void rewind() { at_ = read_ = sent_ = 0; }
 
   Phase phase_ = Phase::kNone;
   std::string name_;

@@ -96,6 +96,7 @@ class PanelSession {
   void serve_jog();
   void end_jog();
   std::string jog_line(const Jog& jog) const;
+  void check_program();
   void feed_program();
   void note(const std::string& text, bool error = false);
   std::int64_t milliseconds() const;
@@ -114,7 +115,8 @@ class PanelSession {
   Alarm alarm_;
   bool hold_when_gone_ = true;
   bool page_ = false;
-  std::size_t line_ = 0;  // of the program, that has begun last
+  std::optional<grbl::Interpreter> check_;  // of the program that is to start
+  std::size_t line_ = 0;                    // of the program, that has begun last
   bool homed_ = false;
   TimePoint homed_at_;  // when it was asked
   grbl::Controller controller_;
