@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 TEST(Program, RunsToItsEndAndTellsTheLine) {
   Bench bench;
-  bench.load("G21 G90\nG1 X4 F1200\n\n(a comment with ! and ?)\nY4\nX0 Y0\nM2\nX100\n");
+  bench.load("G21 G90\nG1 X4 F1200\n\n(a comment with ! and ?)\nY4\nX0 Y0\nM2\nX999\n");
   bench.send({{"do", "start"}});
   std::vector<int> lines;
   bench.machine.at_moments = [&] {

@@ -69,6 +69,15 @@ TEST(Jog, DoesNotBeginAgainByMessagesOfOneThatHasEnded) {
   EXPECT_EQ(bench.machine.live.at[0], stood);
 }
 
+TEST(Jog, MessagesOfAnotherDoNotProlongIt) {
+  Bench bench;
+  bench.press(1);
+  bench.machine.at_moments = [&] { bench.held(2); };
+  bench.work(milliseconds(1000));
+  ASSERT_EQ(bench.machine.stops.size(), 1U);
+  EXPECT_LE(bench.machine.stops[0], TimePoint(milliseconds(310)));
+}
+
 TEST(Jog, EndsWhenThePageGoesOrAnotherComes) {
   for (const bool goes : {true, false}) {
     Bench bench;

@@ -95,13 +95,16 @@ async function arrow(page) {
 async function held(page, press, then = async () => {}) {
   for (let n = 0; n < 5; ++n) {
     await until(page, 'Idle')
+    const before = await place(page)
     const lift = await press()
     await pause(900)
     const at = await place(page)
-    const jogged = (await state(page)).state === 'Jog'
+    const way = Math.max(...at.map((value, axis) => Math.abs(value - before[axis])))
+    const jogged = (await state(page)).state === 'Jog' && way > 0.4 * kSpeed
     if (jogged) await then()
     await lift()
     if (jogged) return at
+    await pause(500)
   }
   assert.fail(`no jog of a second: ${await notes(page)}`)
 }
@@ -146,9 +149,15 @@ test('a limit switch stops a jog; the alarm says why; recover and drive off; on 
   await until(page, 'Idle')
   // Without soft limits, into the switch.
   await page.locator('#percent').selectOption('100')
-  const lift = await touch(page, '#jog-X-minus')
+  for (let n = 0; n < 5 && (await state(page)).state !== 'Alarm'; ++n) {
+    await until(page, 'Idle')
+    const lift = await touch(page, '#jog-X-minus')
+    await page.waitForFunction(() => window.panel.now.jogger.jog)
+    await page.waitForFunction(() => !window.panel.now.jogger.jog)  // a loaded host ends it before the switch
+    await lift()
+    await pause(300)
+  }
   await until(page, 'Alarm')
-  await lift()
   const alarm = await page.locator('#alarm').textContent()
   assert.match(alarm, /Alarm 1: .*limit.*X -10[0-9]\.\d{3} mm/i)
   const [x] = await place(page)
@@ -246,6 +255,28 @@ test('the page goes in mid-program: held; a new page goes on', async () => {
   await page.waitForFunction(() => document.querySelectorAll('#program .line').length >= 2)
   await page.locator('#resume').click()
   await page.waitForFunction(() => window.panel.now.state.program.phase === 'done', null, { timeout: 60000 })
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+test('a page whose connection is silent for 3 s has gone; it comes back by itself, and nothing moves by that', async () => {
+  const { page, said } = await open()
+  await load(page, 'line.ngc', 'G91 G1 X90 F1200\nX-90\n')
+  await start(page)
+  await until(page, 'Run')
+  const [begun] = await place(page)
+  wire.freeze(true)
+  await pause(3800)
+  wire.freeze(false)
+  await page.waitForFunction(() => window.panel.link.open && document.documentElement.dataset.connected === 'true' && window.panel.now.state.state === 'Hold:0', null, { timeout: 10000 })
+  const held = await place(page)
+  const way = held[0] - begun
+  assert.ok(way > 10 && way < 20 * 4.5, `${way} mm at 20 mm/s`)
+  await pause(500)
+  assert.deepEqual(await place(page), held)
+  await page.keyboard.press('Escape')
+  await page.waitForFunction(() => window.panel.now.state.program.phase === 'stopped')
+  await standing(page)
   assert.deepEqual(said, [])
   await page.close()
 })
