@@ -39,6 +39,7 @@ void LocalCardChoice::add_to(CLI::App& command) {
       ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ")
       ->capture_default_str();
+  command.add_flag("--fast", fast, "the simulated card runs as fast as it can, not in real time");
   world.add_to(command);
 }
 
@@ -53,6 +54,7 @@ class LocalCard::Served {
     serve::Settings settings;
     settings.token = token_;
     settings.clock_hz = choice.clock_hz;
+    settings.real_time = !choice.fast;
     settings.world = world_.get();
     server_ = std::make_unique<serve::CardServer>(*engine_, *listener_, settings);
     thread_ = std::thread([this] { serve(); });
@@ -69,8 +71,7 @@ class LocalCard::Served {
       lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
     }
     const run::PathIdentity& path = path_.identity();
-    return fmt::format("path: {} steps, identity {}; without the commands' numbers {}{}", path.count(), path.text(),
-                       path.unnumbered_text(), lockstep);
+    return fmt::format("path: {} steps, of axes and directions {}{}", path.count(), path.order_text(), lockstep);
   }
 
  private:

@@ -1,4 +1,4 @@
-// A simulated card of this process that runs by itself, in real time, as one of `trammel serve` does.
+// A simulated card of this process that runs by itself, as one of `trammel serve` does.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,10 @@ namespace trammel::app {
 struct LocalCardChoice {
   std::string engine = "rtl";
   std::uint32_t clock_hz = 1'000'000;
+  bool fast = false;  // as fast as it can, not in real time
   WorldChoice world;
 
-  // --engine, --clock, --world and --world-events.
+  // --engine, --clock, --fast, --world and --world-events.
   void add_to(CLI::App& command);
 };
 
@@ -30,7 +31,7 @@ class LocalCard {
 
   // With its token.
   transport::CardUrl url() const;
-  // The steps that it has made on the path and their identity, as `trammel serve` prints them. Ends the card.
+  // How many steps it has made on the path, and a number for their order, as of run::PathIdentity. Ends the card.
   std::string end();
 
  private:

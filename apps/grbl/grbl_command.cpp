@@ -16,7 +16,9 @@
 #include "common/standard_streams.hpp"
 #include "common/terminal.hpp"
 #include "standard_stream.hpp"
+#include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/grbl/card_machine.hpp"
 #include "trammel/grbl/controller.hpp"
 #include "trammel/grbl/server.hpp"
@@ -112,6 +114,12 @@ void serve_senders(const GrblOptions& options, driver::Card& card, grbl::Attenti
   }
 }
 
+void tell_under_runs(driver::Card& card) {
+  if (!card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) return;
+  tell("note", fmt::format("holds for want of commands since the card's reset: {}",
+                           card.parts().registers.read(card_map::reg::kUnderruns)));
+}
+
 void serve_on(const GrblOptions& options, const transport::CardUrl& url, const machine::Machine& machine) {
   with_card(url, Purpose::kMove, [&](driver::Card& first, transport::Connection& connection) {
     require_axes(first, machine);
@@ -120,6 +128,7 @@ void serve_on(const GrblOptions& options, const transport::CardUrl& url, const m
     driver::Card card = driver::Card::open(bus);
     end_grbl_at_signals();
     serve_senders(options, card, bus, machine);
+    tell_under_runs(card);
   });
 }
 

@@ -132,8 +132,8 @@ class ServedPath final : public driver::StepSink {
     counted_.path_step(step);
   }
   std::string text() const {
-    return fmt::format("path: {} steps, identity {}; without the commands' numbers {}", whole_.count(), whole_.text(),
-                       whole_.unnumbered_text());
+    return fmt::format("path: {} steps, identity {}; without the commands' numbers {}; of axes and directions {}",
+                       whole_.count(), whole_.text(), whole_.unnumbered_text(), whole_.order_text());
   }
   world::PathCount count(bool anew) {
     if (anew) counted_ = {};

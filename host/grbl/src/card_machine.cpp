@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/low_level/requests.hpp"
@@ -119,7 +120,7 @@ void CardMachine::look_at_position() {
   faulted_ = now.status.faulted;
   const double clock = card_.identification().clock_hz;
   const double seconds = static_cast<double>(now.time - speed_time_) / clock;
-  if (seconds >= kSpeedTime) {
+  if (seconds >= kSpeedTime || !moving_) {
     double squares = 0;
     for (const char letter : {'X', 'Y', 'Z'}) {
       const auto axis = machine_.axis(letter);
@@ -239,6 +240,8 @@ End CardMachine::guarded(const std::function<void(End&)>& move) {
   card_.parts().requests.take_hold();
   card_.parts().requests.take_stop();
   look_at_position();
+  live_.speed = 0;
+  speed_at_ = live_.at;
   return end;
 }
 
@@ -250,9 +253,11 @@ End CardMachine::run(gcode::LineSource& lines, const Before& before) {
     settings.reader.spindle_speed = before.speed;
     settings.start = before.place;
     settings.stands_at = position_->pulses();
+    settings.ticks = std::exchange(ticks_, {});
     run::Runner runner([&] { return std::make_unique<BorrowedLines>(lines); }, limited_, limits(), settings);
     runner.add(*this);
     const run::Outcome outcome = runner.stream(card_);
+    ticks_ = outcome.ticks;
     if (!outcome.probes.empty()) end.probe = Probed{outcome.probes.back().tripped, outcome.probes.back().edge};
   });
 }

@@ -59,7 +59,9 @@ bool Controller::take(const std::string& line) {
     if (busy && state_ == State::kIdle) return false;
     take_jog(line.substr(3));
   } else if (line[0] == '$') {
-    if (busy && state_ == State::kIdle && line != "$G" && line != "$") return false;
+    // What uses the machine is work()'s; while it moves Grbl refuses these at once.
+    const bool moves = state_ == State::kRun || state_ == State::kJog;
+    if (line != "$G" && line != "$" && !moves && (busy || !from_work_)) return false;
     system(line);
   } else if (state_ == State::kAlarm || state_ == State::kJog) {
     answer(Status::kLocked);
@@ -122,7 +124,9 @@ void Controller::work() {
     if (waiting_) {
       const std::string line = std::move(*waiting_);
       waiting_.reset();
+      from_work_ = true;
       take(line);
+      from_work_ = false;
       return;
     }
   }

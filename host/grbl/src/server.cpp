@@ -34,10 +34,11 @@ void Server::write(const std::string& text) {
   }
 }
 
-// As a serial adapter resets an Arduino when it is opened; but a machine that moves goes on.
+// As a serial adapter resets an Arduino when it is opened; but a job that is under way goes on.
 void Server::greet(Controller& controller) {
   const State state = controller.state();
-  if (state == State::kIdle || state == State::kAlarm || state == State::kCheck) controller.receive("\x18");
+  const bool rests = state == State::kIdle || state == State::kAlarm || state == State::kCheck;
+  if (rests && controller.idle()) controller.receive("\x18");
 }
 
 void Server::add(std::unique_ptr<transport::ByteStream> stream, Controller& controller) {

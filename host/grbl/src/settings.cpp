@@ -45,7 +45,7 @@ std::map<int, double> defaults_of(const machine::Machine& machine) {
     values[0] = index && n == 0 ? axis.step_length_ns / 1000 : values[0];
     if (axis.inverted) values[3] += 1U << n;
     if (travel_of(axis) > 0) values[20] = 1;
-    if (axis.homing) values[22] = machine.require_home ? 1 : values[22];
+    if (axis.homing) values[22] = 1;
     values[100 + at] = axis.steps_per_mm;
     values[110 + at] = axis.max_velocity * kMinute;
     values[120 + at] = axis.max_acceleration;

@@ -54,7 +54,8 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
       quantiser_(path_, clock_hz_, hold_clocks(machine, card.clock_hz) / 2, queues_of(card),
                  profile_of(machine, settings) == SpeedProfile::kSCurve, card),
-      plan_(plan_for(machine, settings)) {
+      plan_(plan_for(machine, settings)),
+      ticks_(settings.ticks) {
   const double seconds = hold_clocks(machine, card.clock_hz) / card.clock_hz;
   for (const machine::MachineAxis& axis : machine.axes)
     hold_speeds_.push_back(hold_share(machine) * axis.max_acceleration * seconds);
@@ -103,7 +104,7 @@ void Planner::LookAhead::read_block() {
   }
   entry.halfwords = halfwords(entry.block);
   queued_ += entry.halfwords;
-  entry.begin_ticks = entry.end_ticks = end_tick_;
+  entry.begin_ticks = entry.end_ticks = ticks_.end_tick;
   if (moves(entry.block)) {
     add_motion(entry);
   } else if (tail_ != nullptr) {
@@ -136,17 +137,17 @@ void Planner::LookAhead::add_motion(PathEntry& entry) {
   const Junction junction =
       tail_ != nullptr && !settings_.single_block ? junctions_.between(tail_->block, entry.block) : Junction{};
   if (tail_ != nullptr && junction.speed == 0) end_run(*tail_);
-  const bool same_class = rapid_ == entry.block.rapid;
-  const double density = same_class && suits(density_, entry.block) ? density_ : wanted_density(entry.block);
+  const bool same_class = ticks_.rapid == entry.block.rapid;
+  const double density = same_class && suits(ticks_.density, entry.block) ? ticks_.density : wanted_density(entry.block);
   if (tail_ != nullptr) {
     tail_->jump = junction.bend == 0 ? junction.jump : 0;
     tail_->bend = junction.bend;
-    tail_->cut = !same_class || density != density_;
+    tail_->cut = !same_class || density != ticks_.density;
     push_span(*tail_, junction.speed);
   }
   place(entry, density);
   entry.hold_speed = hold_speed(entry.block);
-  rapid_ = entry.block.rapid;
+  ticks_.rapid = entry.block.rapid;
   tail_ = &entry;
 }
 
@@ -176,18 +177,18 @@ double Planner::LookAhead::hold_speed(const Block& block) const {
 
 // Length and ticks go on through stops: a path has the same ticks wherever the program stops.
 void Planner::LookAhead::place(PathEntry& entry, double density) {
-  if (density != density_) {
-    density_ = density;
-    base_mm_ = end_mm_;
-    base_tick_ = end_tick_;
+  if (density != ticks_.density) {
+    ticks_.density = density;
+    ticks_.base_mm = ticks_.end_mm;
+    ticks_.base_tick = ticks_.end_tick;
   }
   entry.density = density;
-  entry.begin = end_mm_;
-  entry.begin_ticks = end_tick_;
-  entry.end = end_mm_ += entry.block.length;
-  const auto ticks = static_cast<std::uint64_t>((entry.end - base_mm_) * density + 0.5);
-  const std::uint64_t least = end_tick_ + std::max<std::uint64_t>(1, entry.block.least_ticks);
-  entry.end_ticks = end_tick_ = std::max(base_tick_ + ticks, least);
+  entry.begin = ticks_.end_mm;
+  entry.begin_ticks = ticks_.end_tick;
+  entry.end = ticks_.end_mm += entry.block.length;
+  const auto ticks = static_cast<std::uint64_t>((entry.end - ticks_.base_mm) * density + 0.5);
+  const std::uint64_t least = ticks_.end_tick + std::max<std::uint64_t>(1, entry.block.least_ticks);
+  entry.end_ticks = ticks_.end_tick = std::max(ticks_.base_tick + ticks, least);
 }
 
 // Ticks a mm: as many as evenness wants and the clock allows.

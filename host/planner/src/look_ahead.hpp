@@ -24,6 +24,7 @@ class Planner::LookAhead {
   // A piece that begins in the first block, in order; false after its last.
   bool piece(driver::FeedCommand& piece) { return quantiser_.take(path_.begin(), piece); }
   void pop() { path_.pop(); }
+  const PathTicks& ticks() const { return ticks_; }
   const PlanWork& work() const { return plan_->work(); }
 
  private:
@@ -53,14 +54,8 @@ class Planner::LookAhead {
   Quantiser quantiser_;
   std::unique_ptr<SpeedPlan> plan_;
   PathEntry* tail_ = nullptr;  // moves, and its span waits for the corner at its end
-  // Of the last motion: where it ends; its density, and where that is what it is from; its class.
-  double end_mm_ = 0;
-  std::uint64_t end_tick_ = 0;
+  PathTicks ticks_;          // of the last motion
   std::uint64_t queued_ = 0;  // halfwords
-  double density_ = 0;
-  double base_mm_ = 0;
-  std::uint64_t base_tick_ = 0;
-  bool rapid_ = false;
   bool draining_ = false;  // a run has ended
   bool ended_ = false;
 };

@@ -58,6 +58,7 @@ Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const Ca
 
 Planner::~Planner() = default;
 
+const PathTicks& Planner::ticks() const { return look_ahead_->ticks(); }
 const PlanWork& Planner::work() const { return look_ahead_->work(); }
 
 bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {

@@ -11,6 +11,8 @@ std::string PathIdentity::text() const { return fmt::format("{:016x}", hash_); }
 
 std::string PathIdentity::unnumbered_text() const { return fmt::format("{:016x}", unnumbered_); }
 
+std::string PathIdentity::order_text() const { return fmt::format("{:016x}", order_); }
+
 void ShaperDelay::pin_step(const driver::PinStep& step) {
   std::deque<driver::PathStep>& waiting = waiting_[step.axis];
   if (waiting.empty() || waiting.front().direction != step.direction || waiting.front().cycle > step.cycle) {

@@ -33,8 +33,9 @@ class Pipeline {
         machine_(machine),
         kinematics_(machine),
         card_(card),
-        planning_({settings.single_block, settings.profile, std::move(meanwhile)}) {
+        planning_({settings.single_block, settings.profile, std::move(meanwhile), settings.ticks}) {
     planner_.emplace(blocks_, machine_, card_, planning_);
+    planning_.ticks = {};  // behind a probe they begin anew
     if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
     if (settings.single_block) blocks_.keep_corners();
     all_.tap = all;
@@ -68,6 +69,7 @@ class Pipeline {
   }
   std::size_t lines_on_probes() const { return reader_.lines_on_probes(); }
   std::map<int, double> parameters() const { return reader_.parameters(); }
+  const planner::PathTicks& ticks() const { return planner_->ticks(); }
   gcode::Coordinates millimetres(const planner::Pulses& pulses) const { return kinematics_.coordinates(pulses); }
   const kinematics::Kinematics& kinematics() const { return kinematics_; }
 

@@ -315,6 +315,7 @@ Outcome Runner::run(driver::Card& card) {
   made.commands = stream.sent();
   made.probes = stream.probes();
   made.parameters = pipeline.parameters();
+  made.ticks = pipeline.ticks();
   return made;
 }
 
@@ -333,6 +334,7 @@ Outcome Runner::stream(driver::Card& card) {
   made.commands = stream.sent();
   made.probes = stream.probes();
   made.parameters = pipeline.parameters();
+  made.ticks = pipeline.ticks();
   return made;
 }
 

@@ -80,6 +80,7 @@ class CardMachine final : public MachineSide, private run::Observer {
   machine::Machine limited_;  // with the soft limits of homed axes alone, and a window for a sender
   std::string lost_;          // why the place is not known; empty where it is
   std::unique_ptr<run::MachinePosition> position_;
+  planner::PathTicks ticks_;  // of the motions so far
   bool moving_ = false;
   std::size_t line_ = 0;
   double planned_ = 0;       // s of motion sent

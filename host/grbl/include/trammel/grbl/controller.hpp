@@ -45,7 +45,9 @@ class Controller {
   // Behind the lines that were accepted so far.
   const Interpreter& interpreter() const { return interpreter_; }
   // Nothing is under way or waits to be done.
-  bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_; }
+  bool idle() const {
+    return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes();
+  }
 
  private:
   friend class SectionLines;
@@ -110,6 +112,7 @@ class Controller {
   std::optional<std::string> waiting_;  // a line that is taken when all before it is done
   std::optional<Accepted> alone_;       // an accepted one that is answered when it is done
   bool answer_at_resume_ = false;       // of M0
+  bool from_work_ = false;              // the line is not from serve()
   bool executing_ = false;              // within a motion of the machine
   bool executing_alone_ = false;        // of a line that is answered when it is done
   bool reset_ = false;

@@ -25,6 +25,7 @@ class InputBuffer {
   // The next line without its end; CR LF ends one line. Of a line that is too long, kLongestLine + 1 bytes.
   std::optional<std::string> take();
   void clear();
+  bool has_bytes() const { return !waiting_.empty(); }
 
   // Bytes that a sender may add now without one being dropped, at most kReceiveBuffer.
   std::size_t room() const;

@@ -32,12 +32,24 @@ enum class SpeedProfile {
   kSCurve,     // jerk is limited where an axis that moves has a max_jerk; BlockBuilder::require_jerk() asks for all
 };
 
+// Where a planner's paths stand on their way: the next one's first path gets the ticks that it would have had in the
+// same planner, so that a program in parts makes the steps of the whole, in their order.
+struct PathTicks {
+  double density = 0;  // ticks a mm of the last path; 0: none yet
+  double base_mm = 0;  // where that density began
+  std::uint64_t base_tick = 0;
+  double end_mm = 0;
+  std::uint64_t end_tick = 0;
+  bool rapid = false;  // the last path's class
+};
+
 struct PlannerSettings {
   bool single_block = false;  // each line of the program ends in a stop
   SpeedProfile profile = SpeedProfile::kByMachine;
   // Called before each block is read and before each ramp is planned, since one Planner::next() may take a whole window
   // of them. What it throws passes through that call.
   std::function<void()> meanwhile{};
+  PathTicks ticks{};
 };
 
 // kTrapezoid or kSCurve.
@@ -73,6 +85,8 @@ class Planner {
   // then of no further use.
   bool next(driver::CommandSink& sink, PlannedBlock& planned);
 
+  // Behind the last block that was read.
+  const PathTicks& ticks() const;
   // Of the speed plan.
   const PlanWork& work() const;
 

@@ -24,12 +24,15 @@ class PathIdentity final : public driver::StepSink {
     add(hash_, step.command);
     add(hash_, word);
     add(unnumbered_, word);
+    add(order_, word & 0xFF);
     ++count_;
   }
   std::uint64_t count() const { return count_; }
   std::string text() const;  // 16 hexadecimal digits
   // Likewise without the commands' numbers, which begin anew where a run goes on.
   std::string unnumbered_text() const;
+  // Likewise of axis and direction alone: also where the speeds were planned otherwise, and paths have other ticks.
+  std::string order_text() const;
 
  private:
   static void add(std::uint64_t& hash, std::uint64_t word) {
@@ -39,6 +42,7 @@ class PathIdentity final : public driver::StepSink {
 
   std::uint64_t hash_ = 0;
   std::uint64_t unnumbered_ = 0;
+  std::uint64_t order_ = 0;
   std::uint64_t count_ = 0;
 };
 

@@ -29,6 +29,7 @@ struct RunSettings {
   std::optional<planner::Pulses> stands_at;
   planner::ArcsBy arcs = planner::ArcsBy::kGenerator;  // and what the card has
   planner::SpeedProfile profile = planner::SpeedProfile::kByMachine;
+  planner::PathTicks ticks;   // where the run goes on with a program of which Outcome::ticks told
   bool single_block = false;  // each line of the program ends in a stop, and the next is sent when the card is idle
 };
 

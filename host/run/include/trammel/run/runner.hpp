@@ -109,6 +109,7 @@ struct Outcome {
   std::uint64_t commands = 0;                // sent
   std::vector<ProbeMade> probes;
   std::map<int, double> parameters;         // of the program at its end, those that are not 0
+  planner::PathTicks ticks;                 // for a run of what follows
   std::optional<std::uint32_t> under_runs;  // holds for want of commands; none where the card has no such hold
 };
 

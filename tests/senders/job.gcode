@@ -1,0 +1,27 @@
+(pocket with a rounded corner, as CAM programs write them)
+G21
+G90
+G17
+G0 X0 Y0 Z2
+M3 S1000
+G1 Z-0.5 F600
+G1 X20 F3000
+G2 X25 Y5 I0 J5
+G1 Y15
+G3 X20 Y20 R5
+G1 X5
+X4.9 Y19.4
+X4.6 Y18.9
+X4.1 Y18.4
+X3.5 Y18.1
+X2.8 Y18
+G1 X0 Y18
+Y0
+G4 P0.1
+G91
+G1 X3 Y3
+X-3 Y-3
+G90
+G0 Z5
+M5
+G0 X0 Y0
