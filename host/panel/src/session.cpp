@@ -40,7 +40,7 @@ PanelSession::PanelSession(grbl::MachineSide& machine, grbl::Settings& settings,
       homed_at_(begun_),
       controller_(machine, settings, [this](const std::string& text) { hear(text); }) {
   // Home has a button of its own; a machine that has not been homed is locked until it is, or is recovered.
-  if (machine.can_home()) settings.set(kHoming, 1);
+  if (machine.can_home() && !settings.flag(kHoming)) settings.set(kHoming, 1);
 }
 
 std::int64_t PanelSession::milliseconds() const {
