@@ -82,6 +82,24 @@ TEST(Program, IsHeldAndStopped) {
   EXPECT_LT(bench.machine.live.at[0], 6);
 }
 
+// Whenever it comes: no line behind it moves anything.
+TEST(Program, NothingMovesBehindAStop) {
+  std::string text = "G91 F1200\n";
+  for (unsigned n = 0; n < 60; ++n) text += n % 2 == 0 ? "G0 X0.3\n" : "G0 Y0.2\n";
+  for (int time = 20; time < 400; time += 7) {
+    Bench bench;
+    bench.load(text);
+    bench.send({{"do", "start"}});
+    bench.after(milliseconds(time), [&] { bench.send({{"do", "stop"}}); });
+    bench.work(milliseconds(time + 20));
+    const gcode::Coordinates stood = bench.machine.live.at;
+    bench.work(milliseconds(300));
+    ASSERT_EQ(bench.machine.live.at, stood) << time;
+    ASSERT_EQ(bench.state()["program"]["phase"], "stopped") << time;
+    ASSERT_EQ(bench.state()["state"], "Idle") << time;
+  }
+}
+
 // Nothing moves for a program that the controller would refuse in its midst.
 TEST(Program, IsCheckedBeforeItMoves) {
   const std::pair<const char*, const char*> kCases[]{

@@ -54,6 +54,7 @@ void PanelSession::note(const std::string& text, bool error) {
 
 void PanelSession::arrived() {
   end_jog();
+  if (program_.phase() == Program::Phase::kLoading) program_.unload();
   page_ = true;
 }
 
@@ -133,8 +134,8 @@ bool PanelSession::take_load(const Request& request) {
     return true;
   }
   if (request.what == "part") {
-    if (program_.append(request.text)) return true;
-    if (program_.phase() == Program::Phase::kLoading) program_.unload();
+    if (program_.phase() != Program::Phase::kLoading || program_.append(request.text)) return true;
+    program_.unload();
     return false;
   }
   if (program_.phase() != Program::Phase::kLoading) return true;  // said already
@@ -200,7 +201,7 @@ void PanelSession::realtime(std::uint8_t byte) {
 void PanelSession::stop() {
   jog_.reset();
   commands_.clear();
-  program_.end_check("Stopped by the operator");
+  end_program("Stopped by the operator");
   realtime(kReset);
 }
 
@@ -293,7 +294,7 @@ void PanelSession::serve() {
 
 void PanelSession::work() {
   // Here alone, since homing within `meanwhile` would hear of nothing.
-  if (!commands_.empty() && sent_.empty()) {
+  if (!commands_.empty() && sent_.empty() && controller_.idle()) {
     const std::string command = commands_.front();
     commands_.pop_front();
     send(Sent::kCommand, command);
@@ -325,8 +326,7 @@ void PanelSession::hear_line(const std::string& line) {
     sent_.clear();
     jog_.reset();
     note(alarm_text(alarm_.number), true);
-    program_.end_check(alarm_text(alarm_.number));
-    program_.stop(alarm_text(alarm_.number));
+    end_program(alarm_text(alarm_.number));
   } else if (begins_with(line, "[MSG:") && line.back() == ']') {
     hear_message(line.substr(5, line.size() - 6));
   } else if (begins_with(line, "Grbl ")) {
@@ -361,12 +361,18 @@ void PanelSession::hear_message(const std::string& text) {
   }
 }
 
+// At once, so that no further line goes out.
+void PanelSession::end_program(const std::string& reason) {
+  if (program_.running()) note(fmt::format("{}: stopped at line {}.", program_.name(), line_));
+  program_.end_check(reason);
+  program_.stop(reason);
+}
+
 // A reset has ended what was under way.
 void PanelSession::reset_heard() {
   sent_.clear();
   if (controller_.state() != State::kAlarm) alarm_ = {};
-  if (program_.running()) note(fmt::format("{}: stopped at line {}.", program_.name(), line_));
-  program_.stop("Stopped by the operator");
+  end_program("Stopped by a reset");
 }
 
 }  // namespace trammel::panel

@@ -93,6 +93,7 @@ class PanelSession {
   void hear_answer(const std::string& line);
   void hear_message(const std::string& text);
   void reset_heard();
+  void end_program(const std::string& reason);
   void serve_jog();
   void end_jog();
   std::string jog_line(const Jog& jog) const;
