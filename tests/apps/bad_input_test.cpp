@@ -99,8 +99,8 @@ TEST(BadInput, FullDisk) {
 TEST(Help, OfEverySubcommand) {
   const Command command;
   for (const std::string subcommand :
-       {"", "run", "line", "info", "serve", "monitor", "dump", "selftest", "drives", "steps", "methods", "compare",
-        "reproduce", "position", "zero", "recover", "machine", "calibrate", "world"}) {
+       {"",        "run",     "line",      "info",     "serve", "monitor", "dump",    "selftest",  "drives", "steps",
+        "methods", "compare", "reproduce", "position", "zero",  "recover", "machine", "calibrate", "world",  "panel"}) {
     const Outcome outcome = command.run(subcommand + " --help");
     EXPECT_EQ(outcome.status, 0) << subcommand;
     EXPECT_NE(outcome.out.find("Usage: trammel"), std::string::npos) << outcome.out;

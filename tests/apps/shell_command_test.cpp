@@ -13,7 +13,7 @@ namespace {
 const std::vector<std::string> kCommands = {"run",        "line",    "jog",       "info",    "monitor", "dump",
                                             "selftest",   "serve",   "steps",     "methods", "compare", "reproduce",
                                             "completion", "man",     "position",  "zero",    "recover", "drives",
-                                            "home",       "machine", "calibrate", "world"};
+                                            "home",       "machine", "calibrate", "world",   "panel"};
 
 // The long options that the help of a subcommand names at the beginning of a line.
 std::set<std::string> options_of(const Command& command, const std::string& name) {

@@ -87,7 +87,7 @@ TEST(Names, HelpOfACommandIsItsHelp) {
   EXPECT_EQ(command.run("help help").out, command.run("--help").out);
   for (const std::string name :
        {"run", "line", "info", "monitor", "dump", "selftest", "drives", "position", "zero", "recover", "serve", "steps",
-        "methods", "compare", "reproduce", "calibrate", "world"}) {
+        "methods", "compare", "reproduce", "calibrate", "world", "panel"}) {
     const Outcome outcome = command.run("help " + name);
     EXPECT_EQ(outcome.status, 0) << name;
     EXPECT_EQ(outcome.out, command.run(name + " --help").out);

@@ -48,7 +48,7 @@ std::string Controller::coordinates_text(const gcode::Coordinates& at) const {
   return text;
 }
 
-void Controller::report() {
+Report Controller::report_now() {
   const Live live = machine_.look();
   const Modal& modal = interpreter_.modal();
   const gcode::Coordinates offset = interpreter_.work_offset();
@@ -77,8 +77,10 @@ void Controller::report() {
   if (modal.spindle == 4) report.accessories += 'C';
   if (modal.flood) report.accessories += 'F';
   if (modal.mist) report.accessories += 'M';
-  say(status_.text(report, static_cast<unsigned>(settings_.value(10))));
+  return report;
 }
+
+void Controller::report() { say(status_.text(report_now(), static_cast<unsigned>(settings_.value(10)))); }
 
 std::string Controller::probe_text() const {
   return fmt::format("[PRB:{}:{}]", coordinates_text(probed_.at), probed_.tripped ? 1 : 0);

@@ -40,6 +40,10 @@ class Controller {
   void work();
 
   State state() const { return state_; }
+  // What the answer to '?' says.
+  Report report_now();
+  // Behind the lines that were accepted so far.
+  const Interpreter& interpreter() const { return interpreter_; }
   // Nothing is under way or waits to be done.
   bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes(); }
 

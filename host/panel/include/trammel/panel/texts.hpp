@@ -1,0 +1,13 @@
+// Grbl's error and alarm numbers in words.
+#pragma once
+
+#include <string>
+
+namespace trammel::panel {
+
+// Of "error:N".
+std::string error_text(int number);
+// Of "ALARM:N"; 0: the machine has not been homed since it was switched on.
+std::string alarm_text(int number);
+
+}  // namespace trammel::panel
