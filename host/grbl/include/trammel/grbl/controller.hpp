@@ -45,9 +45,7 @@ class Controller {
   // Behind the lines that were accepted so far.
   const Interpreter& interpreter() const { return interpreter_; }
   // Nothing is under way or waits to be done.
-  bool idle() const {
-    return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes();
-  }
+  bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes(); }
 
  private:
   friend class SectionLines;
