@@ -138,7 +138,8 @@ void Planner::LookAhead::add_motion(PathEntry& entry) {
       tail_ != nullptr && !settings_.single_block ? junctions_.between(tail_->block, entry.block) : Junction{};
   if (tail_ != nullptr && junction.speed == 0) end_run(*tail_);
   const bool same_class = ticks_.rapid == entry.block.rapid;
-  const double density = same_class && suits(ticks_.density, entry.block) ? ticks_.density : wanted_density(entry.block);
+  const double density =
+      same_class && suits(ticks_.density, entry.block) ? ticks_.density : wanted_density(entry.block);
   if (tail_ != nullptr) {
     tail_->jump = junction.bend == 0 ? junction.jump : 0;
     tail_->bend = junction.bend;

@@ -54,9 +54,9 @@ class Planner::LookAhead {
   Quantiser quantiser_;
   std::unique_ptr<SpeedPlan> plan_;
   PathEntry* tail_ = nullptr;  // moves, and its span waits for the corner at its end
-  PathTicks ticks_;          // of the last motion
-  std::uint64_t queued_ = 0;  // halfwords
-  bool draining_ = false;  // a run has ended
+  PathTicks ticks_;            // of the last motion
+  std::uint64_t queued_ = 0;   // halfwords
+  bool draining_ = false;      // a run has ended
   bool ended_ = false;
 };
 
