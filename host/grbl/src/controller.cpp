@@ -169,6 +169,7 @@ void Controller::ended(const End& end) {
   if (cut) {
     if (!cancelling_jog_) drop_lines();
     interpreter_.stand(machine_.look().at);
+    see_safe_outputs();
   }
   if (end.alarm != Alarm::kNone) return raise(end.alarm, end.message);
   if (!end.message.empty()) say(fmt::format("[MSG:{}]", end.message));
@@ -178,6 +179,30 @@ void Controller::ended(const End& end) {
   } else if (queue_.empty()) {
     state_ = State::kIdle;
   }
+}
+
+// As Grbl does at a reset and at an alarm. With a fault it waits until that is cleared: the card has set its safe
+// levels.
+void Controller::switch_off() {
+  interpreter_.end_spindle();
+  interpreter_.end_coolant();
+  status_.overrides_changed();
+  if (!switched_ || executing_ || machine_.trouble().alarm != Alarm::kNone) return;
+  switched_ = false;
+  const std::string text = "M5 M9\n";
+  gcode::TextLines lines(text, "grbl");
+  executing_ = executing_alone_ = true;
+  machine_.run(lines, {machine_.look().at, interpreter_.parameters(), 5, 0});
+  executing_ = executing_alone_ = false;
+}
+
+// A stop sets the machine file's safe levels. What it has switched off comes back by a line of the sender alone.
+void Controller::see_safe_outputs() {
+  const machine::MachineOutputs& outputs = machine_.machine().outputs;
+  const std::uint16_t safe = outputs.safe();
+  if ((outputs.spindle() & safe) != 0) interpreter_.end_spindle();
+  if ((outputs.coolant() & safe) != 0) interpreter_.end_coolant();
+  status_.overrides_changed();
 }
 
 // Lines that Grbl answers when they are done: probes, dwells, M0, M2 and M30.
@@ -204,6 +229,7 @@ bool Controller::run_alone(const Accepted& line) {
   gcode::TextLines lines(text, "grbl");
   state_ = State::kRun;
   numbers_.clear();
+  switched_ = switched_ || line.block.outputs;
   executing_ = executing_alone_ = true;
   const End end = machine_.run(lines, line.before);
   executing_ = executing_alone_ = false;
@@ -237,12 +263,14 @@ void Controller::raise(Alarm alarm, const std::string& message) {
   }
   pending_alarm_ = Alarm::kNone;
   drop_lines();
-  if (alarm != Alarm::kProbeInitial && alarm != Alarm::kProbeMissed) input_.clear();
+  const bool by_probe = alarm == Alarm::kProbeInitial || alarm == Alarm::kProbeMissed;
+  if (!by_probe) input_.clear();
   interpreter_.stand(machine_.look().at);
   state_ = State::kAlarm;
   say(fmt::format("ALARM:{}", static_cast<int>(alarm)));
   if (!message.empty()) say(fmt::format("[MSG:{}]", message));
   say("[MSG:'$H'|'$X' to unlock]");
+  if (!by_probe) switch_off();
 }
 
 void Controller::finish_reset() {
@@ -251,6 +279,7 @@ void Controller::finish_reset() {
   drop_lines();
   if (pending_alarm_ != Alarm::kNone) raise(pending_alarm_);
   machine_.hold(false);
+  switch_off();
   interpreter_.reset();
   interpreter_.stand(machine_.look().at);
   probed_ = {};

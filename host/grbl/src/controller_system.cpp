@@ -174,6 +174,7 @@ Status Controller::unlock() {
   }
   shape_ = machine_.machine();
   interpreter_.stand(machine_.look().at);
+  switch_off();
   say("[MSG:Caution: Unlocked]");
   state_ = State::kIdle;  // without the startup lines, as Grbl: they may move the machine
   return Status::kOk;

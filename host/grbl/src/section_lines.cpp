@@ -31,6 +31,7 @@ bool SectionLines::refill() {
   }
   text_ = controller_.queue_.front().block.text;
   number_ = controller_.queue_.front().block.line_number;
+  controller_.switched_ = controller_.switched_ || controller_.queue_.front().block.outputs;
   controller_.queue_.pop_front();
   return true;
 }

@@ -88,6 +88,8 @@ class Controller {
   void run_startup();
   void run_section();
   void ended(const End& end);
+  void switch_off();
+  void see_safe_outputs();
   void apply_settings();
   bool held() const { return state_ == State::kHold || state_ == State::kDoor || state_ == State::kSleep; }
 
@@ -114,6 +116,7 @@ class Controller {
   bool answer_at_resume_ = false;       // of M0
   bool executing_ = false;              // within a motion of the machine
   bool executing_alone_ = false;        // of a line that is answered when it is done
+  bool switched_ = false;               // an output, by a line, since all were switched off
   bool reset_ = false;
   bool cancelling_jog_ = false;
   Alarm pending_alarm_ = Alarm::kNone;

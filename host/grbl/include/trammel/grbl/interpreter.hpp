@@ -34,7 +34,9 @@ class Interpreter {
   const gcode::Coordinates& place() const { return place_; }
 
   const Modal& modal() const { return modal_; }
+  // Something else than a line has switched them off.
   void end_spindle() { modal_.spindle = 5; }
+  void end_coolant() { modal_.mist = modal_.flood = false; }
   // As LinuxCNC numbers them, each that Grbl has: G28, G30, G92, G54 to G59.
   const std::map<int, double>& parameters() const { return parameters_; }
   void set_parameters(const std::map<int, double>& parameters);
