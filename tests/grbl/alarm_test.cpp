@@ -182,6 +182,56 @@ TEST(Probe, EndsWithAReset) {
   EXPECT_EQ(session.state(), "Idle");
 }
 
+// The lines of motions that switch outputs.
+std::vector<std::string> switches(const Session& session) {
+  std::vector<std::string> lines;
+  for (const std::string& line : session.fake.lines) {
+    if (line.find('M') != std::string::npos) lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(Outputs, AreSwitchedOffByAReset) {
+  Session session(router());
+  session.begun();
+  session.ask("M3 S500 M8");
+  session.put("\x18");
+  session.settle();
+  ASSERT_FALSE(switches(session).empty());
+  EXPECT_EQ(switches(session).back(), "M5 M9");
+  const std::size_t before = session.fake.lines.size();
+  session.put("\x18");
+  session.settle();
+  EXPECT_EQ(session.fake.lines.size(), before) << "they are off already";
+}
+
+TEST(Outputs, AreSwitchedOffByAnAlarmAndStayOff) {
+  Session session(fenced_router());
+  session.begun();
+  session.ask("M3 S500");
+  session.ask("G90 G1 X50 F100");  // beyond the soft limit
+  ASSERT_EQ(session.state(), "Alarm");
+  EXPECT_EQ(switches(session).back(), "M5 M9");
+  session.ask("$X");
+  session.ask("G1 X-1 F100");
+  EXPECT_EQ(switches(session).back(), "M5 M9") << "nothing switches them on again but a line";
+  EXPECT_EQ(session.fake.befores.back().spindle, 5);
+}
+
+TEST(Outputs, ThatAStopHasSwitchedOffAreKnownToBeOff) {
+  machine::Machine machine = router();
+  machine.outputs.off_at_rest = machine.outputs.m3;
+  Session session(machine);
+  session.begun();
+  session.ask("M3 S500");
+  session.fake.ticks_a_motion = 8;
+  session.script([&] { session.put("\x85"); });
+  session.put("$J=G91X-50F100\n");
+  session.settle();
+  session.ask("G91 G1 X-1 F100");
+  EXPECT_EQ(session.fake.befores.back().spindle, 5) << "the jog's cancel set the safe levels";
+}
+
 // A router that has $22=1.
 class HomingRouter : public testing::Test {
  protected:
