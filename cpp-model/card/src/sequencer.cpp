@@ -195,8 +195,9 @@ void Sequencer::clock_piece(const Decision& d) {
     state_.out.piece_class = card_map::constant::kClassFeed;
     state_.out.slew_shift = 0;
   } else if (d.piece_begins) {
-    state_.out.piece_class = state_.feed.flags() % card_map::constant::kPieceSilent;
-    state_.out.slew_shift = state_.feed.flags() / card_map::constant::kPieceDoubling;
+    const std::uint8_t flags = state_.feed.flags();
+    state_.out.piece_class = static_cast<std::uint8_t>(flags % card_map::constant::kPieceSilent);
+    state_.out.slew_shift = static_cast<std::uint8_t>(flags / card_map::constant::kPieceDoubling);
   }
   const bool over = (d.piece_ends || state_.out.spent) && !d.piece_goes_on && !d.piece_begins;
   if (d.take || state_.out.spent) state_.out.moving = d.piece_runs && !over;
