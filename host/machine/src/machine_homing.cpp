@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "entries.hpp"
 #include "machine_inputs.hpp"
 #include "text.hpp"
 #include "trammel/driver/roles.hpp"
