@@ -27,6 +27,8 @@ debian_packages_check=(clang-format universal-ctags iverilog yosys)
 debian_packages_site=(doxygen graphviz)
 # LinuxCNC's interpreter, which tests compare the G-code reader with.
 debian_packages_linuxcnc=(linuxcnc-uspace)
+# A sender with windows, and a screen for it.
+debian_packages_senders=(bcnc python3-numpy xvfb)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
@@ -52,7 +54,10 @@ install_debian() {
   [ ${#missing[@]} -eq 0 ] && return
   command -v apt-get >/dev/null || die "this needs Debian packages: ${missing[*]}"
   local sudo=()
-  [ "$(id -u)" -eq 0 ] || sudo=(sudo)
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || die "installing needs root or sudo; let root run: apt-get install ${missing[*]}"
+    sudo=(sudo)
+  fi
   say "installing ${missing[*]}"
   update_packages "${sudo[@]}"
   DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=$apt_lock_timeout \

@@ -7,54 +7,11 @@ the card makes must be those of `trammel run`, in their order.
 Exit status 0 when all is as it must be, 1 when it is not, 77 when the senders are not installed.
 """
 import pathlib
-import re
-import signal
 import subprocess
 import sys
-import tempfile
 import time
 
-ORDER = re.compile(r"path: (\d+) steps.*of axes and directions ([0-9a-f]{16})")
-LONGEST = 120  # s, of a job that takes ten
-
-
-class Server:
-    """`trammel grbl` at a serial port of its own."""
-
-    def __init__(self, trammel):
-        self.err = tempfile.TemporaryFile("w+")
-        self.process = subprocess.Popen([trammel, "grbl", "--pty", "--engine", "model"], stdout=subprocess.PIPE,
-                                        stderr=self.err, text=True)
-        said = self.process.stdout.readline()
-        found = re.search(r"serial port (\S+)", said)
-        if not found:
-            sys.exit(f"trammel grbl said: {said!r}")
-        self.port = found.group(1)
-
-    def end(self):
-        self.process.send_signal(signal.SIGTERM)
-        self.process.wait(LONGEST)
-        self.err.seek(0)
-        return self.err.read()
-
-
-def order_of(text):
-    found = ORDER.search(text)
-    return found.groups() if found else text
-
-
-def by_run(trammel, program):
-    """What `trammel run` makes of the program on a card of its own."""
-    with tempfile.TemporaryFile("w+") as err:
-        served = subprocess.Popen([trammel, "serve", "--engine", "model", "--fast", "--once"], stdout=subprocess.PIPE,
-                                  stderr=err, text=True)
-        url = next(word.strip("'") for line in served.stdout if "--card" in line for word in line.split()
-                   if "token=" in word)
-        subprocess.run([trammel, "run", program, "--card", url], check=True, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL)
-        served.wait(LONGEST)
-        err.seek(0)
-        return order_of(err.read())
+from grbl_server import LONGEST, Server, by_run, order_of
 
 
 def pygrbl_streamer(port, program):
@@ -95,11 +52,11 @@ def main():
     wanted = by_run(trammel, program)
     wrong = 0
     for name in names or SENDERS:
-        server = Server(trammel)
+        server = Server(trammel, "--pty")
         begun = time.time()
         try:
-            SENDERS[name](server.port, program)
-            await_idle(server.port)
+            SENDERS[name](server.place, program)
+            await_idle(server.place)
         finally:
             made = order_of(server.end())
         good = made == wanted
