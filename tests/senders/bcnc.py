@@ -9,6 +9,7 @@ TRAMMEL is the command, PROGRAM a program for a walk of some seconds, MACHINE ex
 Exit status 0 when all is as it must be, 1 when it is not.
 """
 import json
+import math
 import os
 import pathlib
 import re
@@ -170,7 +171,11 @@ def begin_job(bcnc, reader):
 def pause_and_resume(bcnc, reader):
     since = reader.now()
     bcnc.do("PAUSE")
-    held = reader.await_report("the hold", lambda report: report.state == "Hold:0", since)
+    begun = reader.await_report("the hold", lambda report: report.state.startswith("Hold"), since)
+    held = reader.await_report("the hold's end", lambda report: report.state == "Hold:0", since)
+    # The ramp takes 0.05 mm at 10 mm/s, and a report is some milliseconds old. A hold that waits for its block's end or
+    # for an empty queue is further away.
+    check(math.dist(begun.place, held.place) < 1, f"the hold did not act at once: {begun.line}, {held.line}")
     check(held.place not in (START, END), f"the hold came after the job: {held.line}")
     since = reader.now()
     await_true("reports of the hold", lambda: len(reader.reports(since)) >= 4)
