@@ -123,6 +123,21 @@ install_page() {
   fi
 }
 
+# install_senders: senders written elsewhere that are small enough for every run of the tests: from PyPI in .venv, from npm
+# in build/gcnc, pinned by tests/senders/gcnc/package-lock.json.
+install_senders() {
+  local folder=tests/senders/gcnc
+  install_python requirements-senders.txt
+  find_npm
+  if ! cmp -s $folder/package-lock.json build/gcnc/node_modules/.trammel-lock 2>/dev/null; then
+    say "installing the sender of $folder/package-lock.json into build/gcnc"
+    mkdir -p build/gcnc
+    cp $folder/package.json $folder/package-lock.json build/gcnc
+    (cd build/gcnc && "${npm[@]}" ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null)
+    cp $folder/package-lock.json build/gcnc/node_modules/.trammel-lock
+  fi
+}
+
 # Options for configuring beside the preset's; a script may add to them.
 configure_options=()
 
