@@ -27,6 +27,8 @@ debian_packages_check=(clang-format universal-ctags iverilog yosys)
 debian_packages_site=(doxygen graphviz)
 # LinuxCNC's interpreter, which tests compare the G-code reader with.
 debian_packages_linuxcnc=(linuxcnc-uspace)
+# A sender with windows, and a screen for it.
+debian_packages_senders=(bcnc python3-numpy xvfb)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
@@ -52,7 +54,10 @@ install_debian() {
   [ ${#missing[@]} -eq 0 ] && return
   command -v apt-get >/dev/null || die "this needs Debian packages: ${missing[*]}"
   local sudo=()
-  [ "$(id -u)" -eq 0 ] || sudo=(sudo)
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || die "installing needs root or sudo; let root run: apt-get install ${missing[*]}"
+    sudo=(sudo)
+  fi
   say "installing ${missing[*]}"
   update_packages "${sudo[@]}"
   DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=$apt_lock_timeout \
@@ -115,6 +120,21 @@ install_page() {
     say "installing the packages of web/package-lock.json into web/node_modules"
     (cd web && "${npm[@]}" ci --no-audit --no-fund --loglevel=error >/dev/null)
     cp web/package-lock.json web/node_modules/.trammel-lock
+  fi
+}
+
+# install_senders: senders written elsewhere that are small enough for every run of the tests: from PyPI in .venv, from npm
+# in build/gcnc, pinned by tests/senders/gcnc/package-lock.json.
+install_senders() {
+  local folder=tests/senders/gcnc
+  install_python requirements-senders.txt
+  find_npm
+  if ! cmp -s $folder/package-lock.json build/gcnc/node_modules/.trammel-lock 2>/dev/null; then
+    say "installing the sender of $folder/package-lock.json into build/gcnc"
+    mkdir -p build/gcnc
+    cp $folder/package.json $folder/package-lock.json build/gcnc
+    (cd build/gcnc && "${npm[@]}" ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null)
+    cp $folder/package-lock.json build/gcnc/node_modules/.trammel-lock
   fi
 }
 

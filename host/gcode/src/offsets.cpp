@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
+#include "trammel/gcode/parameter_numbers.hpp"
+
 namespace trammel::gcode {
 namespace {
 
-constexpr int kHome = 5161;
-constexpr int kSecondHome = 5181;
-constexpr int kShifted = 5210;
-constexpr int kShift = 5211;
-constexpr int kSystem = 5220;
-constexpr int kFirstSystem = 5221;
-constexpr int kBetweenSystems = 20;
-constexpr int kLast = kFirstSystem + static_cast<int>(machine::kCoordinateSystems) * kBetweenSystems - 1;
+constexpr int kLast =
+    parameter::kFirstSystem + static_cast<int>(machine::kCoordinateSystems) * parameter::kBetweenSystems - 1;
 
 }  // namespace
 
@@ -65,24 +61,24 @@ auto Offsets::place_of(Self& self, int number, std::size_t& axis) -> decltype(&s
     nth = number - first;
     return nth >= 0 && nth < kParameterAxes;
   };
-  if (in(kHome)) {
+  if (in(parameter::kHome)) {
     place = &self.home_;
-  } else if (in(kSecondHome)) {
+  } else if (in(parameter::kSecondHome)) {
     place = &self.second_home_;
-  } else if (in(kShift)) {
+  } else if (in(parameter::kShift)) {
     place = &self.shift_;
-  } else if (number >= kFirstSystem && number <= kLast) {
-    nth = (number - kFirstSystem) % kBetweenSystems;
+  } else if (number >= parameter::kFirstSystem && number <= kLast) {
+    nth = (number - parameter::kFirstSystem) % parameter::kBetweenSystems;
     if (nth < kParameterAxes)
-      place = &self.systems_[static_cast<std::size_t>((number - kFirstSystem) / kBetweenSystems)];
+      place = &self.systems_[static_cast<std::size_t>((number - parameter::kFirstSystem) / parameter::kBetweenSystems)];
   }
   axis = parameter_axis(self.machine_, nth).value_or(card_map::kMaxAxes);
   return place;
 }
 
 std::optional<Value> Offsets::parameter(int number) const {
-  if (number == kShifted) return Value{shifted_ ? 1.0 : 0.0, false};
-  if (number == kSystem) return Value{static_cast<double>(system_ + 1), false};
+  if (number == parameter::kShifted) return Value{shifted_ ? 1.0 : 0.0, false};
+  if (number == parameter::kSystem) return Value{static_cast<double>(system_ + 1), false};
   std::size_t axis = 0;
   const Place* place = place_of(*this, number, axis);
   if (place == nullptr) return std::nullopt;
@@ -90,16 +86,16 @@ std::optional<Value> Offsets::parameter(int number) const {
 }
 
 void Offsets::collect(std::map<int, double>& numbers) const {
-  for (int number = kHome; number <= kLast; ++number) {
+  for (int number = parameter::kHome; number <= kLast; ++number) {
     const auto value = parameter(number);
     if (value && value->value != 0) numbers[number] = value->value;
   }
 }
 
 void Offsets::preset(int number, double value) {
-  if (number == kShifted) {
+  if (number == parameter::kShifted) {
     shifted_ = value != 0;
-  } else if (number == kSystem && value >= 1 && value <= static_cast<double>(systems_.size())) {
+  } else if (number == parameter::kSystem && value >= 1 && value <= static_cast<double>(systems_.size())) {
     system_ = static_cast<std::size_t>(value) - 1;
   }
   std::size_t axis = 0;

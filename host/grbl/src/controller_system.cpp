@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "trammel/gcode/parameter_numbers.hpp"
 #include "trammel/grbl/controller.hpp"
 #include "words.hpp"
 
@@ -136,7 +137,7 @@ Status Controller::restore(char what) {
   if (what != '#') settings_.restore();
   if (what != '$') {
     std::map<int, double> zeros = interpreter_.parameters();
-    for (auto& [number, value] : zeros) value = number == 5220 ? value : 0;
+    for (auto& [number, value] : zeros) value = number == gcode::parameter::kSystem ? value : 0;
     interpreter_.set_parameters(zeros);
     settings_.set_parameters(zeros);
     status_.offsets_changed();

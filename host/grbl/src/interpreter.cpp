@@ -1,26 +1,21 @@
 #include "trammel/grbl/interpreter.hpp"
 
+#include "trammel/gcode/parameter_numbers.hpp"
 #include "trammel/gcode/reader.hpp"
 #include "trammel/planner/block_builder.hpp"
 
 namespace trammel::grbl {
 namespace {
 
+namespace parameter = gcode::parameter;
+
 constexpr std::string_view kLetters = "XYZABC";
-constexpr int kHome = 5161;
-constexpr int kSecondHome = 5181;
-constexpr int kShifted = 5210;
-constexpr int kShift = 5211;
-constexpr int kSystem = 5220;
-constexpr int kFirstSystem = 5221;
-constexpr int kBetweenSystems = 20;
-constexpr int kSystems = 6;
 
 int first_of(int kind) {
-  if (kind == 28) return kHome;
-  if (kind == 30) return kSecondHome;
-  if (kind == 92) return kShift;
-  return kFirstSystem + (kind - 54) * kBetweenSystems;
+  if (kind == 28) return parameter::kHome;
+  if (kind == 30) return parameter::kSecondHome;
+  if (kind == 92) return parameter::kShift;
+  return parameter::kFirstSystem + (kind - 54) * parameter::kBetweenSystems;
 }
 
 // Of the reader's parameters those that Grbl has, each with a value, so that none is left to the machine file.
@@ -33,8 +28,8 @@ std::map<int, double> whole(const std::map<int, double>& some) {
   for (const int kind : {28, 30, 92, 54, 55, 56, 57, 58, 59}) {
     for (int n = 0; n < static_cast<int>(kLetters.size()); ++n) take(first_of(kind) + n);
   }
-  take(kShifted);
-  take(kSystem);
+  take(parameter::kShifted);
+  take(parameter::kSystem);
   return all;
 }
 
@@ -49,9 +44,9 @@ void Interpreter::reset() {
     follow(text, modal_, place, first);
     parameters_ = whole(first);
   }
-  parameters_[kSystem] = 1;
-  parameters_[kShifted] = 0;
-  for (int n = 0; n < static_cast<int>(kLetters.size()); ++n) parameters_[kShift + n] = 0;
+  parameters_[parameter::kSystem] = 1;
+  parameters_[parameter::kShifted] = 0;
+  for (int n = 0; n < static_cast<int>(kLetters.size()); ++n) parameters_[parameter::kShift + n] = 0;
 }
 
 void Interpreter::set_parameters(const std::map<int, double>& parameters) {
@@ -80,7 +75,7 @@ gcode::Coordinates Interpreter::offset(int kind) const {
 gcode::Coordinates Interpreter::work_offset() const {
   gcode::Coordinates at = offset(modal_.system);
   const gcode::Coordinates shift = offset(92);
-  for (std::size_t n = 0; n < at.size(); ++n) at[n] += parameters_.at(kShifted) != 0 ? shift[n] : 0;
+  for (std::size_t n = 0; n < at.size(); ++n) at[n] += parameters_.at(parameter::kShifted) != 0 ? shift[n] : 0;
   if (const auto z = machine_.axis('Z')) at[*z] += modal_.tool_length;
   return at;
 }
@@ -134,7 +129,7 @@ Status Interpreter::read(std::string_view line, Block& block) {
   place_ = place;
   parameters_ = whole(parameters);
   modal_ = block.after;
-  parameters_[kSystem] = modal_.system - 53;
+  parameters_[parameter::kSystem] = modal_.system - 53;
   return Status::kOk;
 }
 

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "trammel/gcode/parameter_numbers.hpp"
+
 namespace trammel::grbl {
 namespace {
 
@@ -159,7 +161,7 @@ void Settings::set_parameters(const std::map<int, double>& parameters) {
   std::map<int, double> kept;
   for (const auto& [number, value] : parameters) {
     // G92 and the system in force are not kept, as in Grbl.
-    const bool lost = number >= 5210 && number <= 5220;
+    const bool lost = number >= gcode::parameter::kShifted && number <= gcode::parameter::kSystem;
     if (!lost && value != 0) kept[number] = value;
   }
   if (kept == parameters_) return;
