@@ -15,8 +15,8 @@ TEST(Hm2Motion, ARateIsStepsPerSecondExactly) {
   for (const std::int64_t rate : {rate_of(100'000), -rate_of(33'333.3), rate_of(1234.5), std::int64_t{7'000'001}}) {
     Bench bench;
     bench.set_rate(1, rate);
-    bench.run(2.0);
-    ASSERT_GT(bench.steps.pins.size(), 2000U);
+    bench.run(1.0);
+    ASSERT_GT(bench.steps.pins.size(), 1000U);
     double farthest = 0;
     for (std::size_t k = 0; k < bench.steps.pins.size(); ++k) {
       const driver::PinStep& step = bench.steps.pins[k];
@@ -111,7 +111,7 @@ TEST(Hm2Motion, ARateBeyondTheStepTimesIsClampedAndNoPulseIsCountedThatWasNotMad
   bench.write(map_at::kStepSpace, {50, 50, 50, 50});
   bench.set_rate(2, rate_of(1'000'000));
   bench.run(0.1);
-  EXPECT_GT(bench.hostmot2.steps().counts().clamped, 300U);
+  EXPECT_GT(bench.hostmot2.steps().counts().clamped, 150U);
   bench.set_rate(2, 0);
   bench.run(0.01);
   EXPECT_EQ(bench.pins(2), bench.counter(2));

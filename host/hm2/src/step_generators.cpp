@@ -195,7 +195,8 @@ void StepGenerators::stop() {
 void StepGenerators::clear_trouble() {
   guarded([&] {
     card_.clear_faults(kMargin);
-    trouble_.clear();
+    // A cause that lasts cannot be cleared.
+    trouble_ = card_.read_faults() == 0 ? "" : card_.read_fault_text();
   });
 }
 

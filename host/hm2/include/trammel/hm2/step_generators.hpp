@@ -44,8 +44,8 @@ struct StepTimes {
 
 class StepGenerators {
  public:
-  static constexpr double kSlice = 250e-6;  // s, but at least kLeastSlice clocks and two pulses of an axis
-  static constexpr double kLead = 100e-6;   // s, but at least kLeastLead clocks: accesses of a line and a snapshot
+  static constexpr double kSlice = 500e-6;  // s, but at least kLeastSlice clocks and two pulses of an axis
+  static constexpr double kLead = 60e-6;    // s, but at least kLeastLead clocks: accesses of a line and a snapshot
   static constexpr std::uint64_t kLeastSlice = 1000;
   static constexpr std::uint64_t kLeastLead = 600;
   static constexpr std::uint64_t kNever = UINT64_MAX;
