@@ -138,7 +138,8 @@ void add_hm2_options(CLI::App& command, ServeOptions& options, const std::vector
   for (CLI::Option* const other : others) hm2->excludes(other);
   command
       .add_option("--hm2-lose", options.hm2_lose,
-                  "percent of the datagrams, each way, that are lost on purpose, to try a bad network")
+                  "percent of the datagrams, each way, that are lost on purpose from the first motion on, to try a "
+                  "bad network")
       ->check(CLI::Range(0.0, 100.0))
       ->type_name("PERCENT")
       ->needs(hm2);

@@ -14,6 +14,8 @@ using namespace std::chrono_literals;
 constexpr auto kSleep = 50ms;
 // A driver that is silent for so long has gone; another one may come then. Far longer than any watchdog's time.
 constexpr auto kSilence = 1s;
+// Behind a bite nothing moves, and a driver that was ended may be started anew at once.
+constexpr auto kSilenceBitten = 100ms;
 // A card that is further behind is not made to run faster than life afterwards.
 constexpr double kMaxBehind = 0.5;  // s
 
@@ -63,6 +65,7 @@ void Server::turn() {
 
 void Server::serve(const Datagram& datagram) {
   run_to(datagram.came);
+  look_for_silence(datagram.came);
   if (!admit(datagram) || loses()) return;
   heard_ = std::max(heard_, datagram.came);
   const Bytes& answer = board_.answer(datagram.bytes.data(), datagram.size);
@@ -88,8 +91,9 @@ bool Server::admit(const Datagram& datagram) {
   return true;
 }
 
+// Not while a driver loads, which has no second try for what it asks then: from the first motion on.
 bool Server::loses() {
-  if (settings_.lose_percent == 0) return false;
+  if (settings_.lose_percent == 0 || hostmot2_.steps().counts().streams == 0) return false;
   const bool lost = std::uniform_real_distribution<double>(0, 100)(random_) < settings_.lose_percent;
   if (lost) ++counts_.lost;
   return lost;
@@ -97,7 +101,7 @@ bool Server::loses() {
 
 // Without a watchdog too nothing moves on without its driver.
 void Server::look_for_silence(Clock::time_point now) {
-  if (!driver_ || now - heard_ < kSilence) return;
+  if (!driver_ || now - heard_ < (hostmot2_.bitten() ? kSilenceBitten : kSilence)) return;
   if (hostmot2_.moves()) hostmot2_.bite("the driver has fallen silent");
   settings_.note(fmt::format("driver {} has gone", driver_->text()));
   driver_.reset();

@@ -43,6 +43,7 @@ class Hostmot2 {
 
   std::uint64_t now() const { return time_.now(); }
   bool moves() const { return steps_.moves(); }
+  bool bitten() const { return watchdog_.bitten(); }
   std::uint64_t bites() const { return bites_; }
   const StepGenerators& steps() const { return steps_; }
 

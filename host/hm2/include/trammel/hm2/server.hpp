@@ -19,9 +19,9 @@ namespace trammel::hm2 {
 class Server {
  public:
   struct Settings {
-    std::uint32_t clock_hz = 0;                                         // of the card
-    double lose_percent = 0;                                            // of the datagrams, each way, on purpose
-    std::uint64_t seed = 1;                                             // of which
+    std::uint32_t clock_hz = 0;  // of the card
+    double lose_percent = 0;     // of the datagrams, each way, on purpose, once something has moved
+    std::uint64_t seed = 1;      // of which
     std::function<void(const std::string&)> note = [](const auto&) {};  // what the operator should know
   };
   struct Counts {
