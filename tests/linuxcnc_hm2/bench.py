@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 
-HERE = pathlib.Path(__file__).resolve().parent
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples" / "linuxcnc-hm2"
 CARD, DRIVER = "192.168.81.2", "192.168.81.1"
 USER = "nobody"
 PROGRAMS = ["unshare", "nsenter", "ip", "setpriv", "chrt", "halrun", "linuxcnc", "rtapi_app"]
@@ -96,11 +96,13 @@ class Bench:
     def notes(self):
         return self.notes_file.read_text()
 
-    def copy(self, name, **values):
-        """A file of this folder for LinuxCNC's side, with @NAME@ replaced."""
-        text = (HERE / name).read_text()
-        for key, value in values.items():
-            text = text.replace(f"@{key}@", str(value))
+    def copy(self, name, *changes):
+        """An example's file for LinuxCNC's side; each change is (what, by what)."""
+        text = (EXAMPLES / name).read_text()
+        for old, new in changes:
+            if old not in text:
+                raise AssertionError(f"{name} has no {old!r}")
+            text = text.replace(old, new)
         target = self.folder / name
         target.write_text(text)
         target.chmod(0o755)

@@ -28,7 +28,7 @@ def same_places(pins, counters):
 
 def sine(trammel, seconds, lose):
     with bench.Bench(trammel, "--hm2-lose", str(lose)) as b:
-        b.copy("sine.hal", SECONDS=seconds, SAMPLES=int(950 * seconds))
+        b.copy("sine.hal", ("sleep 3", f"sleep {seconds}"), ("-n 2850", f"-n {950 * seconds}"))
         output = b.run(40 + seconds, "halrun", "-f", "sine.hal")
         values = re.findall(r"^(-?\d[-\d.e]*|TRUE|FALSE)$", output, re.MULTILINE)
         expect(len(values) == 5, f"five values of the driver's:\n{output}")
@@ -52,7 +52,7 @@ def sine(trammel, seconds, lose):
 
 def watchdog(trammel):
     with bench.Bench(trammel) as b:
-        b.copy("sine.hal", SECONDS=30, SAMPLES=1)
+        b.copy("sine.hal", ("sleep 3", "sleep 30"))
         for _ in range(10):
             process = b.start("halrun", "-f", "sine.hal")
             time.sleep(1.5)

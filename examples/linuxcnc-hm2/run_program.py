@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""LinuxCNC's screen in this test: homes, runs program.ngc to its end, and prints where the machine stands."""
+"""In place of a screen: homes, runs program.ngc to its end, and prints where the machine stands."""
+import pathlib
 import sys
 import time
 
@@ -49,7 +50,7 @@ def main():
     wait(lambda: status.homed[:3] == (1, 1, 1), 10, "homing")
     command.mode(linuxcnc.MODE_AUTO)
     command.wait_complete()
-    command.program_open("/tmp/program.ngc")
+    command.program_open(str(pathlib.Path(__file__).resolve().parent / "program.ngc"))
     command.wait_complete()
     command.auto(linuxcnc.AUTO_RUN, 0)
     wait(lambda: status.interp_state != linuxcnc.INTERP_IDLE, 5, "the program's begin")
