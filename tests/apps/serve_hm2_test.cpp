@@ -14,7 +14,7 @@ TEST(ServeHm2, WhatCannotBeIsOneLineAndStatus2) {
       {"--hm2 127.0.0.1:65536", "must be HOST or HOST:PORT"},
       {"--hm2 --pty", "excludes --hm2"},
       {"--hm2 --fast", "excludes --hm2"},
-      {"--hm2-lose 1", "needs --hm2"},
+      {"--hm2-lose 1", "requires --hm2"},
       {"--hm2 --hm2-lose 101", "--hm2-lose"},
   };
   for (const auto& [options, message] : refusals) {
