@@ -120,6 +120,25 @@ TEST(Hm2Motion, ARateBeyondTheStepTimesIsClampedAndNoPulseIsCountedThatWasNotMad
   EXPECT_EQ(bench.hostmot2.bites(), 0U);
 }
 
+// hm2_eth gives the longest times to axes that nobody has set.
+TEST(Hm2Motion, LongStepTimesOfAnAxisThatStandsDelayNobody) {
+  Bench bench;
+  bench.write(map_at::kStepLength, {10, 0x3FFF, 0x3FFF, 0x3FFF});
+  bench.write(map_at::kStepSpace, {10, 0x3FFF, 0x3FFF, 0x3FFF});
+  bench.set_rate(0, rate_of(20'000));
+  bench.run(0.1);
+  EXPECT_NEAR(static_cast<double>(bench.hostmot2.steps().counts().lines), 200, 2);
+  bench.set_rate(1, rate_of(100));
+  bench.run(0.1);
+  EXPECT_LT(bench.hostmot2.steps().counts().lines, 220U);
+  bench.set_rate(1, 0);
+  bench.run(0.1);
+  bench.set_rate(0, 0);
+  bench.run(0.1);
+  EXPECT_NEAR(static_cast<double>(bench.pins(1)), 10, 1.5);
+  for (unsigned n = 0; n < 2; ++n) EXPECT_EQ(bench.pins(n), bench.counter(n));
+}
+
 TEST(Hm2Motion, TheLongestStepTimesMoveToo) {
   Bench bench;
   bench.write(map_at::kStepLength, {0x3FFF});

@@ -120,7 +120,6 @@ void StepGenerators::open() {
   driver::PositionStreamOptions options;
   options.ahead = 1;
   sent_ = 0;
-  set_slice();
   stream_.emplace(card_, options);
   ++counts_.streams;
   const std::uint64_t before = time_.now();
@@ -129,13 +128,7 @@ void StepGenerators::open() {
   // The line begins between its accesses: known to half of their time, which only the fraction depends on.
   const std::uint64_t begin = before + (time_.now() - before) / 2;
   lines_[0].begin = begin;
-  end_ = begin + slice_;
-}
-
-// Twice the longest pulse with its space at least, so that a line has room for one.
-void StepGenerators::set_slice() {
-  slice_ = clocks_of(kSlice, card_.identification().clock_hz, kLeastSlice);
-  for (unsigned n = 0; n < axes_; ++n) slice_ = std::max<std::uint64_t>(slice_, 2 * card_.timing().pulse_period[n]);
+  end_ = begin + lines_[0].clocks;
 }
 
 void StepGenerators::close() {
@@ -147,30 +140,42 @@ void StepGenerators::close() {
 
 void StepGenerators::read_counters() { counters_ = card_.read_snapshot().position; }
 
+// Of the next line: twice the longest pulse with its space at least, so that there is room for one. An axis that stands
+// needs none, whatever its times.
+std::uint64_t StepGenerators::next_clocks() const {
+  std::uint64_t clocks = slice_;
+  for (unsigned n = 0; n < axes_; ++n) {
+    if (rates_[n] != 0) clocks = std::max<std::uint64_t>(clocks, 2 * card_.timing().pulse_period[n]);
+  }
+  return clocks;
+}
+
 void StepGenerators::send_line() {
   Line& line = lines_[sent_ % lines_.size()];
   line.begin = end_;
+  line.clocks = next_clocks();
   line.from = told_;
-  line.rates = allowed_rates();
+  line.rates = allowed_rates(line.clocks);
   PositionStream::Positions targets{};
   for (unsigned n = 0; n < axes_; ++n) {
-    told_[n] += line.rates[n] * static_cast<std::int64_t>(slice_);
+    told_[n] += line.rates[n] * static_cast<std::int64_t>(line.clocks);
     targets[n] = told_[n] >> kToStream;
   }
   ++sent_;
   ++counts_.lines;
-  end_ += slice_;
-  stream_->send(targets, slice_);
+  end_ += line.clocks;
+  stream_->send(targets, line.clocks);
 }
 
 // A line may have a pulse more than its share.
-StepGenerators::Rates StepGenerators::allowed_rates() {
+StepGenerators::Rates StepGenerators::allowed_rates(std::uint64_t clocks) {
   Rates rates{};
   bool clamped = false;
   for (unsigned n = 0; n < axes_; ++n) {
+    if (rates_[n] == 0) continue;
     const std::uint64_t least = std::max<std::uint64_t>(card_.timing().pulse_period[n], PositionStream::kClocksPerTick);
-    const std::uint64_t pulses = slice_ / least - 1;
-    const auto most = static_cast<std::int64_t>(pulses * (kPulse / slice_));
+    const std::uint64_t pulses = clocks / least - 1;
+    const auto most = static_cast<std::int64_t>(pulses * (kPulse / clocks));
     rates[n] = std::clamp<std::int64_t>(rates_[n], -most, most);
     clamped = clamped || rates[n] != rates_[n];
   }
@@ -208,7 +213,7 @@ StepGenerators::Positions StepGenerators::told_at(std::uint64_t clock) const {
     const Line& line = lines_[(sent_ - back) % lines_.size()];
     if (clock < line.begin && back != kept) continue;
     const auto clocks =
-        static_cast<std::int64_t>(std::clamp<std::uint64_t>(clock, line.begin, line.begin + slice_) - line.begin);
+        static_cast<std::int64_t>(std::clamp<std::uint64_t>(clock, line.begin, line.begin + line.clocks) - line.begin);
     for (unsigned n = 0; n < axes_; ++n) told[n] = line.from[n] + line.rates[n] * clocks;
     break;
   }

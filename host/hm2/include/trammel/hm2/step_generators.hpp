@@ -44,7 +44,7 @@ struct StepTimes {
 
 class StepGenerators {
  public:
-  static constexpr double kSlice = 500e-6;  // s, but at least kLeastSlice clocks and two pulses of an axis
+  static constexpr double kSlice = 500e-6;  // s, but at least kLeastSlice clocks and two pulses of each moving axis
   static constexpr double kLead = 60e-6;    // s, but at least kLeastLead clocks: accesses of a line and a snapshot
   static constexpr std::uint64_t kLeastSlice = 1000;
   static constexpr std::uint64_t kLeastLead = 600;
@@ -92,19 +92,20 @@ class StepGenerators {
  private:
   using Positions = std::array<std::int64_t, card_map::kMaxAxes>;
   using Rates = std::array<std::int64_t, card_map::kMaxAxes>;
-  // Where the axes are told to be: from `begin` on for kSlice, then the next one.
+  // Where the axes are told to be: from `begin` on for so many clocks, then the next one.
   struct Line {
     std::uint64_t begin = 0;  // clock
+    std::uint64_t clocks = 0;
     Positions from{};
     Rates rates{};
   };
 
   bool all_rates_are_zero() const;
   void open();
-  void set_slice();
   void close();
   void send_line();
-  Rates allowed_rates();
+  std::uint64_t next_clocks() const;
+  Rates allowed_rates(std::uint64_t clocks);
   void apply_times();
   Positions told_at(std::uint64_t clock) const;
   void read_counters();
