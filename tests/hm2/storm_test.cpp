@@ -19,7 +19,7 @@ std::uint64_t storm_seed() {
 
 // A command that a card takes; rates, which move it, more often than others.
 void append_good(Bytes& datagram, test::Random& random) {
-  const auto word = [&] { return static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32)); };
+  const auto word = [&] { return static_cast<std::uint32_t>(random.below(0x10000) << 16 | random.below(0x10000)); };
   const auto address = static_cast<std::uint16_t>(4 * random.below(0xB00));
   switch (random.below(5)) {
     case 0:

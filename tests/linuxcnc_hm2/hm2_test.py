@@ -42,6 +42,7 @@ def sine(trammel, seconds, lose):
     expect([round(x * X_SCALE), round(y * Y_SCALE)] == pins[:2], f"the driver reads {x} {y}, the pins made {pins}")
     expect(numbers["refused"] == 0, "datagrams of the driver were refused")
     expect(numbers["datagrams"] > 1500 * seconds * (1 - lose / 50), f"only {numbers['datagrams']} datagrams")
+    expect(numbers["lines"] > 1000 * seconds, f"only {numbers['lines']} lines: they are longer than 0.5 ms")
     away = statistics.median(abs(s[0] - s[1]) + abs(s[2] - s[3]) for s in samples)
     expect(away < 0.2, f"half of the time more than {away} units away")
     expect(lose == 0 or numbers["lost on purpose"] > 5 * seconds, "nothing was lost")
