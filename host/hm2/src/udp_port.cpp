@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <memory>
 
 #include "trammel/driver/errors.hpp"
@@ -99,7 +100,8 @@ void UdpPort::fail(const std::string& why) {
 
 void UdpPort::wait(steady_clock::time_point until) {
   const nanoseconds left = std::max<nanoseconds>(until - steady_clock::now(), nanoseconds(0));
-  const timespec longest{duration_cast<seconds>(left).count(), (left % seconds(1)).count()};
+  const timespec longest{static_cast<std::time_t>(duration_cast<seconds>(left).count()),
+                         static_cast<long>((left % seconds(1)).count())};
   pollfd entry{file_, POLLIN, 0};
   ::ppoll(&entry, 1, &longest, nullptr);
 }
