@@ -25,8 +25,9 @@ debian_packages_page=(chromium)
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
 # The documentation as a site.
 debian_packages_site=(doxygen graphviz)
-# LinuxCNC's interpreter, which tests compare the G-code reader with.
-debian_packages_linuxcnc=(linuxcnc-uspace)
+# LinuxCNC, whose interpreter tests compare the G-code reader with, and which moves the card; networks of their own for
+# the card and for its driver hm2_eth.
+debian_packages_linuxcnc=(linuxcnc-uspace linuxcnc-uspace-dev iproute2)
 # A sender with windows, and a screen for it.
 debian_packages_senders=(bcnc python3-numpy xvfb)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)

@@ -1,7 +1,6 @@
 #include "serve_command.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -12,12 +11,13 @@
 
 #include "common/engine_options.hpp"
 #include "common/errors.hpp"
-#include "common/input_event.hpp"
 #include "common/standard_streams.hpp"
 #include "common/terminal.hpp"
-#include "common/world_choice.hpp"
+#include "serve_hm2.hpp"
+#include "served_card.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/hm2/lbp16.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/path_identity.hpp"
 #include "trammel/serve/card_server.hpp"
@@ -29,55 +29,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint32_t kServedClock = 1'000'000;
-
-struct ServeOptions {
-  std::string engine = "rtl";
-  std::uint32_t clock_hz = kServedClock;
-  unsigned axes = 4;
-  std::string listen = "127.0.0.1";
-  std::uint16_t port = 0;
-  bool terminal = false;
-  std::optional<std::string> token;
-  bool fast = false;
-  std::uint32_t baud = 0;
-  double silence = 60;
-  bool once = false;
-  std::vector<std::string> input_at;
-  WorldChoice world;
-};
-
-volatile sig_atomic_t g_ended = 0;
-
-void say(const std::string& text) { tell("note", text); }
-
-// The first signal ends the server in order; the next one as it would without this.
-void end_at_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { g_ended = 1; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
-}
-
-sim::SimulationOptions engine_of(const ServeOptions& options) {
-  sim::SimulationOptions engine;
-  engine.kind = options.engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
-  engine.axes = options.axes;
-  engine.clock_hz = options.clock_hz;
-  engine.rtl_thread = true;
-  return engine;
-}
-
 serve::Settings settings_of(const ServeOptions& options) {
   if (options.token && !serve::is_token(*options.token)) {
     throw UsageError("--token: 1 to 64 letters, digits, '-' and '_'");
   }
   serve::Settings settings;
   settings.token = options.token.value_or(serve::random_token());
-  settings.clock_hz = options.clock_hz;
+  settings.clock_hz = options.clock();
   settings.real_time = !options.fast;
   settings.baud = options.baud;
-  settings.note = say;
+  settings.note = say_served;
   // A terminal's client cannot be sent away, and keeps nobody else from it.
   if (!options.terminal) {
     settings.hello = 5s;
@@ -94,34 +55,6 @@ std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
     throw UsageError(fmt::format("serve: {}{}", error.what(), has_port ? ": --port takes the port" : ""));
   }
 }
-
-// Switches that are pressed at times of the card: where its time has come between two turns of the server.
-class Switches {
- public:
-  explicit Switches(const ServeOptions& options) : clock_hz_(options.clock_hz) {
-    for (const std::string& text : options.input_at) events_.push_back(input_event(text));
-    std::stable_sort(events_.begin(), events_.end(),
-                     [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
-  }
-  const std::vector<simulation::OperatorEvent>& events() const { return events_; }
-  void press_due(sim::Engine& engine) {
-    for (; next_ < events_.size() && events_[next_].seconds * clock_hz_ <= static_cast<double>(engine.cycles());
-         ++next_)
-      press(engine, events_[next_]);
-  }
-
- private:
-  static void press(sim::Engine& engine, const simulation::OperatorEvent& event) {
-    if (event.kind == simulation::OperatorEvent::Kind::kEmergencyStop)
-      engine.set_emergency_stop(event.level);
-    else
-      engine.set_input(event.input, event.level);
-  }
-
-  double clock_hz_;
-  std::vector<simulation::OperatorEvent> events_;
-  std::size_t next_ = 0;
-};
 
 // All that the card makes, and what it makes since somebody has begun to count.
 class ServedPath final : public driver::StepSink {
@@ -159,15 +92,15 @@ bool is_loopback(const std::string& address) {
 void serve_card(const ServeOptions& options) {
   serve::Settings settings = settings_of(options);
   Switches switches(options);
-  const std::unique_ptr<world::World> world = options.world.make(options.clock_hz, switches.events());
+  const std::unique_ptr<world::World> world = options.world.make(options.clock(), switches.events());
   const std::unique_ptr<transport::Listener> listener = listener_of(options);
-  const std::unique_ptr<sim::Engine> engine = in_world(world.get(), sim::make_engine(engine_of(options)));
+  const std::unique_ptr<sim::Engine> engine = in_world(world.get(), sim::make_engine(served_engine(options)));
   ServedPath path;
   engine->set_sink(&path);
   settings.world = world.get();
   settings.path = [&path](bool anew) { return path.count(anew); };
   serve::CardServer server(*engine, *listener, settings);
-  end_at_signals();
+  end_serving_at_signals();
   if (!options.terminal && !is_loopback(options.listen)) {
     const bool any = options.listen == "0.0.0.0" || options.listen == "::";
     tell("warning", fmt::format("--listen {}: the token travels unencrypted, and who has it moves the card: serve it "
@@ -176,20 +109,40 @@ void serve_card(const ServeOptions& options) {
   }
   tell_where(*listener, settings.token);
   bool met = false;
-  while (g_ended == 0 && !(options.once && met && !server.has_client())) {
+  while (!serving_ended() && !(options.once && met && !server.has_client())) {
     server.turn();
     switches.press_due(*engine);
     met = met || server.has_client();
   }
   const serve::CardServer::Counts& counts = server.counts();
-  const double seconds = static_cast<double>(engine->cycles()) / options.clock_hz;
+  const double seconds = static_cast<double>(engine->cycles()) / options.clock();
   std::string lockstep;  // asking for it settles what was not compared yet
   if (const auto cycles = engine->lockstep_cycles())
     lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
-  say(fmt::format("served {} clients, {} refused; {} requests, {} damaged; {:.3f} s of card time{}", counts.clients,
-                  counts.refused, counts.requests, counts.dropped, seconds, lockstep));
-  say(path.text());
-  if (world) say(world_text(*world, "; "));
+  say_served(fmt::format("served {} clients, {} refused; {} requests, {} damaged; {:.3f} s of card time{}",
+                         counts.clients, counts.refused, counts.requests, counts.dropped, seconds, lockstep));
+  say_served(path.text());
+  if (world) say_served(world_text(*world, "; "));
+}
+
+// `others`: what a card in front of LinuxCNC does not have.
+void add_hm2_options(CLI::App& command, ServeOptions& options, const std::vector<CLI::Option*>& others) {
+  auto* hm2 = command
+                  .add_option("--hm2", options.hm2,
+                              fmt::format("in front of LinuxCNC's driver hm2_eth, on a UDP port (without HOST: "
+                                          "127.0.0.1; without PORT: {})",
+                                          hm2::kUdpPort))
+                  ->type_name("HOST[:PORT]")
+                  ->expected(0, 1)
+                  ->default_str("127.0.0.1");
+  for (CLI::Option* const other : others) hm2->excludes(other);
+  command
+      .add_option("--hm2-lose", options.hm2_lose,
+                  "percent of the datagrams, each way, that are lost on purpose from the first motion on, to try a "
+                  "bad network")
+      ->check(CLI::Range(0.0, 100.0))
+      ->type_name("PERCENT")
+      ->needs(hm2);
 }
 
 }  // namespace
@@ -199,13 +152,12 @@ void add_serve_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("serve", "put a simulated card on a TCP port or a pseudo-terminal");
   command
       ->add_option("--engine", options->engine,
-                   "rtl: the Verilated card in lockstep with the golden model; model: the model alone")
-      ->check(CLI::IsMember({"rtl", "model"}))
-      ->capture_default_str();
-  command->add_option("--clock", options->clock_hz, "clock of the card")
+                   "rtl: the Verilated card in lockstep with the golden model; model: the model alone (default: rtl, "
+                   "with --hm2 model)")
+      ->check(CLI::IsMember({"rtl", "model"}));
+  command->add_option("--clock", options->clock_hz, "clock of the card (default: 1000000, with --hm2 10000000)")
       ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
-      ->type_name("HZ")
-      ->capture_default_str();
+      ->type_name("HZ");
   command->add_option("--axes", options->axes, "axes of the card")
       ->transform(whole_number(1, card_map::kMaxAxes))
       ->capture_default_str();
@@ -216,20 +168,21 @@ void add_serve_command(CLI::App& app) {
   auto* port = command->add_option("--port", options->port, "port; 0: one that is free")
                    ->transform(whole_number(0, 65535))
                    ->capture_default_str();
-  command->add_flag("--pty", options->terminal, "a pseudo-terminal in place of a port")
-      ->excludes(listen)
-      ->excludes(port);
-  command->add_option("--token", options->token, "who says it may move the card (default: a random one)");
-  command->add_flag("--fast", options->fast, "as fast as it can, not in real time");
-  command
-      ->add_option("--baud", options->baud, "what the link carries in card time, as a serial line would (0: no limit)")
-      ->transform(whole_number(0, 100'000'000))
-      ->type_name("BAUD")
-      ->capture_default_str();
-  command->add_option("--silence", options->silence, "a client that is silent for so long is let go")
-      ->check(positive())
-      ->type_name("SECONDS")
-      ->capture_default_str();
+  auto* terminal = command->add_flag("--pty", options->terminal, "a pseudo-terminal in place of a port")
+                       ->excludes(listen)
+                       ->excludes(port);
+  auto* token = command->add_option("--token", options->token, "who says it may move the card (default: a random one)");
+  auto* fast = command->add_flag("--fast", options->fast, "as fast as it can, not in real time");
+  auto* baud = command
+                   ->add_option("--baud", options->baud,
+                                "what the link carries in card time, as a serial line would (0: no limit)")
+                   ->transform(whole_number(0, 100'000'000))
+                   ->type_name("BAUD")
+                   ->capture_default_str();
+  auto* silence = command->add_option("--silence", options->silence, "a client that is silent for so long is let go")
+                      ->check(positive())
+                      ->type_name("SECONDS")
+                      ->capture_default_str();
   command
       ->add_option("--input-at", options->input_at,
                    fmt::format("set an input of the card (0 to {}) to a level (0 or 1) at a time of the card or soon "
@@ -239,7 +192,8 @@ void add_serve_command(CLI::App& app) {
   options->world.add_to(*command);
   command->add_flag("--once", options->once,
                     "end when the first client has gone, and nobody who came meanwhile is left");
-  command->callback([options] { serve_card(*options); });
+  add_hm2_options(*command, *options, {listen, port, terminal, token, fast, baud, silence});
+  command->callback([options] { options->hm2 ? serve_hm2(*options) : serve_card(*options); });
 }
 
 }  // namespace trammel::app

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Debian's unmodified hm2_eth drives `trammel serve --hm2`: hm2_test.py TRAMMEL CASE...
+
+Cases: moves, watchdog (the quick ones), ten-seconds, lost, program, lost-program. Exit status 0, 1, or 77: skipped.
+"""
+import os
+import re
+import signal
+import statistics
+import sys
+import time
+
+import bench
+
+X_SCALE, Y_SCALE = 200, -200  # pulses a unit, as in sine.hal
+LINUXCNC_FILES = ["machine.ini", "machine.hal", "program.ngc", "run_program.py", "tools.tbl"]
+PROGRAM_END, SCALES = (12.345, -7.655, 3.005), (200, 200, -400)  # of program.ngc and machine.ini
+
+
+def expect(holds, text):
+    if not holds:
+        raise AssertionError(text)
+
+
+def same_places(pins, counters):
+    expect(pins == counters, f"pulses at the pins {pins}, counters {counters}")
+
+
+def sine(trammel, seconds, lose):
+    with bench.Bench(trammel, "--hm2-lose", str(lose)) as b:
+        b.copy("sine.hal", ("sleep 3", f"sleep {seconds}"), ("-n 2850", f"-n {950 * seconds}"))
+        output = b.run(40 + seconds, "halrun", "-f", "sine.hal")
+        values = re.findall(r"^(-?\d[-\d.e]*|TRUE|FALSE)$", output, re.MULTILINE)
+        expect(len(values) == 5, f"five values of the driver's:\n{output}")
+        x, y, errors = float(values[0]), float(values[1]), int(values[3])
+        expect(values[2] == "FALSE", f"io_error is set, {errors} packet errors\n{b.notes()}")
+        expect(values[4] == "FALSE", f"the watchdog has bitten\n{b.notes()}")
+        samples = [[float(n) for n in line.split()[-5:]] for line in (b.folder / "samples.txt").read_text().splitlines()
+                   if "overrun" not in line]
+        numbers, pins, counters = b.end_server()
+    same_places(pins, counters)
+    expect([round(x * X_SCALE), round(y * Y_SCALE)] == pins[:2], f"the driver reads {x} {y}, the pins made {pins}")
+    expect(numbers["refused"] == 0, "datagrams of the driver were refused")
+    expect(numbers["datagrams"] > 1500 * seconds * (1 - lose / 50), f"only {numbers['datagrams']} datagrams")
+    expect(numbers["lines"] > 1000 * seconds, f"only {numbers['lines']} lines: they are longer than 0.5 ms")
+    away = statistics.median(abs(s[0] - s[1]) + abs(s[2] - s[3]) for s in samples)
+    expect(away < 0.2, f"half of the time more than {away} units away")
+    expect(lose == 0 or numbers["lost on purpose"] > 5 * seconds, "nothing was lost")
+    print(f"{seconds} s at 1 kHz, {lose} % lost: {numbers['datagrams']:.0f} datagrams, {errors} packet errors, longest answer "
+          f"{numbers['longest answer']:.1f} ms; {numbers['bites']:.0f} bites; median of both axes' distance {away:.3f} units; "
+          f"pulses at the pins {pins[:2]} = counters = accumulators")
+
+
+def watchdog(trammel):
+    with bench.Bench(trammel) as b:
+        b.copy("sine.hal", ("sleep 3", "sleep 30"))
+        for _ in range(10):
+            process = b.start("halrun", "-f", "sine.hal")
+            time.sleep(1.5)
+            if process.poll() is None:
+                break
+        realtime = bench.rtapi_app()
+        before = b.notes().count("motion has ended")
+        os.kill(realtime, signal.SIGSTOP)
+        bench.wait_until(lambda: b.notes().count("motion has ended") > before, 1, f"the bite\n{b.notes()}")
+        time.sleep(0.3)
+        bite = re.findall(r"watchdog at clock (\d+): .*motion has ended; counters ([-\d ]+)", b.notes())[-1]
+        stood = [int(n) for n in bite[1].split()]
+        process.kill()
+        process.wait()
+        numbers, pins, counters = b.end_server()
+    same_places(pins, counters)
+    expect(pins == stood, f"at the bite {stood}, at the end {pins}")
+    expect(any(pins), "nothing had moved")
+    print(f"rtapi_app stopped: the watchdog bit at clock {bite[0]}; pulses at the pins {pins} = counters, then and at the end")
+
+
+def program(trammel, lose):
+    with bench.Bench(trammel, "--hm2-lose", str(lose)) as b:
+        for name in LINUXCNC_FILES:
+            b.copy(name)
+        output = b.run(120, "linuxcnc", "-r", "machine.ini")
+        actual = [float(p) for p in re.search(r"^actual: (.*)$", output, re.MULTILINE)[1].split()]
+        errors = re.search(r"packet errors: (\d+) io_error: (\w+)", output)
+        numbers, pins, counters = b.end_server()
+    expect("machine on: True" in output, output)
+    expect(errors[2] == "False", output)
+    same_places(pins, counters)
+    expected = [round(p * s) for p, s in zip(PROGRAM_END, SCALES)]
+    expect(pins[:3] == expected, f"the program ends at {expected} pulses, the pins at {pins}")
+    expect(all(abs(a - p) < 0.001 for a, p in zip(actual, PROGRAM_END)), f"LinuxCNC stands at {actual}")
+    print(f"program to its end, {lose} % lost: pulses at the pins {pins[:3]} = counters = the program's end; {errors[1]} packet "
+          f"errors, {numbers['datagrams']:.0f} datagrams, {numbers['lines']:.0f} lines, longest answer {numbers['longest answer']:.1f} ms")
+
+
+CASES = {
+    "moves": lambda trammel: sine(trammel, 3, 0),
+    "watchdog": watchdog,
+    "ten-seconds": lambda trammel: sine(trammel, 10, 0),
+    "lost": lambda trammel: sine(trammel, 10, 1),
+    "program": lambda trammel: program(trammel, 0),
+    "lost-program": lambda trammel: program(trammel, 1),
+}
+
+
+def main():
+    if len(sys.argv) < 3 or not set(sys.argv[2:]) <= set(CASES):
+        sys.exit(__doc__)
+    bench.in_own_network()
+    failed = False
+    for name in sys.argv[2:]:
+        begun = time.monotonic()
+        try:
+            CASES[name](os.path.abspath(sys.argv[1]))
+        except AssertionError as error:
+            print(f"FAILED: {name}: {error}")
+            failed = True
+        print(f"{name}: {time.monotonic() - begun:.1f} s", flush=True)
+    return 1 if failed else 0
+
+
+sys.exit(main())
