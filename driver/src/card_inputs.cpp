@@ -119,10 +119,10 @@ LimitState Card::read_limit_state() {
           (state & field::kLimitStateSoftPlus) != 0};
 }
 
-std::string Card::read_fault_text() {
+std::string Card::read_fault_text(const std::vector<std::string>& axes) {
   const bool has_inputs = card_map::has_engine(identification().engines, card_map::engine::kMachineInputs);
   const std::uint32_t limits = has_inputs ? parts_->registers.read(reg::kLimitState) : 0;
-  return describe_faults(read_faults(), limits);
+  return describe_faults(read_faults(), limits, axes);
 }
 
 void Card::set_input_stops(const InputStops& stops) {

@@ -46,15 +46,19 @@ TimeoutError::TimeoutError(const std::string& context, std::uint64_t waited)
 
 namespace {
 
+std::string name_of_axis(unsigned axis, const std::vector<std::string>& names) {
+  return axis < names.size() ? names[axis] : fmt::format("axis {}", axis);
+}
+
 // More than the name says: "axis 0 plus, axis 2 minus".
-std::string detail_of(std::optional<std::uint32_t> read, std::uint32_t fault) {
+std::string detail_of(std::optional<std::uint32_t> read, std::uint32_t fault, const std::vector<std::string>& axes) {
   namespace field = card_map::field;
   const std::uint32_t limit_state = read.value_or(0);
   std::string text;
   const auto add = [&](unsigned shift, const char* end) {
     for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
       if ((limit_state >> (shift + axis) & 1U) != 0)
-        text += fmt::format("{}axis {}{}", text.empty() ? "" : ", ", axis, end);
+        text += fmt::format("{}{}{}", text.empty() ? "" : ", ", name_of_axis(axis, axes), end);
     }
   };
   if (fault == field::kFaultLimit) {
@@ -63,7 +67,8 @@ std::string detail_of(std::optional<std::uint32_t> read, std::uint32_t fault) {
   }
   if (fault == field::kFaultDriveFault) add(field::kLimitStateDriveFaultShift, "");
   if (fault == field::kFaultSoftLimit && read) {
-    text = fmt::format("axis {} {}", (limit_state & field::kLimitStateSoftAxis) >> field::kLimitStateSoftAxisShift,
+    const unsigned axis = (limit_state & field::kLimitStateSoftAxis) >> field::kLimitStateSoftAxisShift;
+    text = fmt::format("{} {}", name_of_axis(axis, axes),
                        (limit_state & field::kLimitStateSoftPlus) != 0 ? "plus" : "minus");
   }
   if (fault == field::kFaultLinkLoss) text = "no access of the program that moved the card came in time";
@@ -73,13 +78,14 @@ std::string detail_of(std::optional<std::uint32_t> read, std::uint32_t fault) {
 
 }  // namespace
 
-std::string describe_faults(std::uint32_t faults, std::optional<std::uint32_t> limit_state) {
+std::string describe_faults(std::uint32_t faults, std::optional<std::uint32_t> limit_state,
+                            const std::vector<std::string>& axes) {
   namespace field = card_map::field;
   std::string text;
   const auto add = [&text](const std::string& name) { text += (text.empty() ? "" : ", ") + name; };
   for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     if ((faults >> (field::kFaultStepShift + axis) & 1U) != 0) {
-      add(fmt::format("step fault of axis {}", axis));
+      add("step fault of " + name_of_axis(axis, axes));
     }
   }
   constexpr std::pair<std::uint32_t, const char*> kNames[] = {{field::kFaultTickMismatch, "TICK_MISMATCH"},
@@ -95,7 +101,7 @@ std::string describe_faults(std::uint32_t faults, std::optional<std::uint32_t> l
                                                               {field::kFaultToolSetter, "TOOL_SETTER"}};
   for (const auto& [mask, name] : kNames) {
     if ((faults & mask) != 0) {
-      const std::string detail = detail_of(limit_state, mask);
+      const std::string detail = detail_of(limit_state, mask, axes);
       add(detail.empty() ? name : fmt::format("{} ({})", name, detail));
     }
   }

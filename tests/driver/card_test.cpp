@@ -371,6 +371,9 @@ TEST(Errors, TextsNameWhatTheyAreOf) {
   EXPECT_EQ(describe_faults(0x10000, 0xA000000), "SOFT_LIMIT (axis 2 plus)");
   EXPECT_EQ(describe_faults(0x2800, 0x028104), "LIMIT (axis 2 minus, axis 0 plus, axis 7 plus), DRIVE_FAULT (axis 1)");
   EXPECT_EQ(describe_faults(0x2000, 0x04), "DRIVE_FAULT");
+  const std::vector<std::string> names{"X", "Y", "Z"};
+  EXPECT_EQ(describe_faults(0x2800, 0x028104, names), "LIMIT (Z minus, X plus, axis 7 plus), DRIVE_FAULT (Y)");
+  EXPECT_EQ(describe_faults(0x1000A, 0xA000000, names), "step fault of Y, step fault of axis 3, SOFT_LIMIT (Z plus)");
   EXPECT_THAT(FaultError(0x800, "line", 0x100).what(),
               HasSubstr("line: the card has stopped with a fault: LIMIT (axis 0 plus)"));
   EXPECT_THAT(describe_reason(15), HasSubstr("FAULTED (15): "));

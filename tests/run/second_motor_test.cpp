@@ -6,6 +6,7 @@
 
 #include "steps.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/run/card_place.hpp"
 #include "trammel/run/jog.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/sim/engine.hpp"
@@ -58,6 +59,15 @@ TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
   jog.wait();
   EXPECT_EQ(position.pulses()[1], 160);
   expect_together();
+}
+
+TEST(SecondMotor, HasANameInMessages) {
+  machine::Machine machine = machine::default_machine();
+  EXPECT_THAT(names_of_card_axes(machine), testing::ElementsAre("X", "Y", "Z", "E"));
+  machine::apply_override(machine, "axis.y.second_motor=true");
+  machine::apply_override(machine, "axis.e.second_motor=true");
+  EXPECT_THAT(names_of_card_axes(machine),
+              testing::ElementsAre("X", "Y", "Z", "E", "second motor of Y", "second motor of E"));
 }
 
 TEST(SecondMotor, MachineFile) {

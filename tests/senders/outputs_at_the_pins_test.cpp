@@ -4,6 +4,7 @@
 namespace trammel::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr unsigned kBoth = 1U << kSpindle | 1U << kCoolant;
@@ -64,7 +65,8 @@ TEST_P(PinsOfOutputs, ALimitSwitchesAlarmLeavesThemToTheSafeLevelsUntilTheUnlock
   machine.outputs.off_at_cause = 1U << kSpindle;
   const auto session = running(machine);
   const auto press = [&] { session->engine().set_input(1, true); };  // x_limit_plus
-  EXPECT_THAT(session->ask_and_then("G91 G1 X10 F3000", kX, 2 * kMm, "", press), HasSubstr("ALARM:1"));
+  const std::string said = session->ask_and_then("G91 G1 X10 F3000", kX, 2 * kMm, "", press);
+  EXPECT_THAT(said, AllOf(HasSubstr("ALARM:1"), HasSubstr("[MSG:LIMIT (X plus)]")));
   EXPECT_LT(session->engine().positions()[kX], 10 * kMm) << "stopped on the way";
   EXPECT_EQ(session->levels(), 1U << kCoolant) << "off_at_cause names the spindle alone";
   EXPECT_THAT(session->ask("$G"), HasSubstr("M5 M9"));

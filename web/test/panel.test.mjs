@@ -159,7 +159,7 @@ test('a limit switch stops a jog; the alarm says why; recover and drive off; on 
   }
   await until(page, 'Alarm')
   const alarm = await page.locator('#alarm').textContent()
-  assert.match(alarm, /Alarm 1: .*limit.*X -10[0-9]\.\d{3} mm/i)
+  assert.match(alarm, /Alarm 1: .*LIMIT \(X minus\).*X -10[0-9]\.\d{3} mm/)
   const [x] = await place(page)
   assert.ok(x < -99 && x > -106, `${x}`)
   assert.match(await page.locator('#switch-X').textContent(), /limit switch/)

@@ -114,6 +114,13 @@ std::uint8_t motors_of(const machine::Machine& machine) {
   return static_cast<std::uint8_t>((1U << machine.motors()) - 1);
 }
 
+std::vector<std::string> names_of_card_axes(const machine::Machine& machine) {
+  std::vector<std::string> names;
+  for (const machine::MachineAxis& axis : machine.axes) names.emplace_back(1, axis.letter);
+  for (const std::size_t axis : machine.second_motors()) names.push_back("second motor of " + names[axis]);
+  return names;
+}
+
 Start start_at(const machine::Machine& machine, const CardPlace& place, bool trust) {
   if (!scales_fit(place, machine)) refuse_other_scales();
   const std::string lost = place.was_set() ? axes_without(machine, place.bits.valid) : "";

@@ -236,8 +236,9 @@ class Card {
 
   // FAULT, 0 if there is none.
   std::uint32_t read_faults();
-  // The same as text, by describe_faults(), with the axes and sides of limits and the axes of drives; "none".
-  std::string read_fault_text();
+  // The same as text, by describe_faults(), with the axes and sides of limits and the axes of drives; "none". `axes`:
+  // their names, as there.
+  std::string read_fault_text(const std::vector<std::string>& axes = {});
   // Clears all faults; a watchdog that has expired starts anew with it, or is off where this object has set none. On
   // the ramp of a fault it waits for the end first, as wait_until_stopped(): the card takes commands from then on.
   // Where that throws (TimeoutError, InterruptedError) the faults stay. Nothing moves by it: a fault has dropped all

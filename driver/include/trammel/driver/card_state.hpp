@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "trammel/card_map.hpp"
 
@@ -91,8 +92,9 @@ constexpr std::uint64_t count_after(std::uint64_t before, std::uint32_t counter)
 }
 
 // Names of the fault bits, for messages: "step fault of axis 2, LIMIT (axis 0 minus)". `limit_state`: the register
-// LIMIT_STATE, 0 where it is not known.
-std::string describe_faults(std::uint32_t faults, std::optional<std::uint32_t> limit_state = std::nullopt);
+// LIMIT_STATE, 0 where it is not known. `axes`: names of the card's axes, by number; others are "axis N".
+std::string describe_faults(std::uint32_t faults, std::optional<std::uint32_t> limit_state = std::nullopt,
+                            const std::vector<std::string>& axes = {});
 // Name of a refusal reason and what it means.
 std::string describe_reason(std::uint8_t reason);
 

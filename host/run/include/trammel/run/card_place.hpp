@@ -59,6 +59,9 @@ std::string check_line_end(const machine::Machine& machine, const CardPlace& pla
 
 // Bits of the machine's motors.
 std::uint8_t motors_of(const machine::Machine& machine);
+// Names of the card's axes, by number, for messages of faults: the letters of the machine's axes, then "second motor of
+// Y". With coupled motors (CoreXY) these are the axes in whose tables of the machine file switches and drives stand.
+std::vector<std::string> names_of_card_axes(const machine::Machine& machine);
 
 // The machine's soft limits in the card, as its last guard: for each axis that has min or max, a valid place, and a
 // motor of its own (with CoreXY X and Y have none, and their limits are the host's alone). An end that the machine does
