@@ -134,7 +134,9 @@ void bind_card(nb::module_& m) {
         "The card that a URL names: sim:, tcp://host:port, serial:/dev/..., spi:/dev/..., mmap:/dev/...");
   m.def("simulate", simulate, "axes"_a = 4, "clock_hz"_a = 1'000'000, "A simulated card: the golden model.");
   m.def("describe_faults", driver::describe_faults, "faults"_a, "limit_state"_a = nb::none(),
-        "The names of the faults in a mask, as text; the axes of limits and drives where LIMIT_STATE is given.");
+        "axes"_a = std::vector<std::string>(),
+        "The names of the faults in a mask, as text; the axes of limits and drives where LIMIT_STATE is given. `axes`: "
+        "names of the card's axes, by number; others are \"axis N\".");
 }
 
 }  // namespace trammel::python
