@@ -67,9 +67,11 @@ void say_counts(const hm2::Board::Counts& board, const hm2::Server::Counts& serv
   const std::string lost = server.lost == 0 ? "" : fmt::format(", {} lost on purpose", server.lost);
   const std::string strangers = server.strangers == 0 ? "" : fmt::format(", {} of others", server.strangers);
   const std::chrono::duration<double, std::milli> longest = server.longest_answer;
-  say_served(fmt::format("{} drivers; {} datagrams, {} answered, {} refused{}{}{}; longest answer {:.3f} ms",
-                         server.drivers, board.datagrams, board.answers, board.all_refused(), refused, strangers, lost,
-                         longest.count()));
+  say_served(
+      fmt::format("{} drivers; {} datagrams, {} answered, {} refused{}{}{}; longest answer {:.3f} ms, longest gap of a "
+                  "driver {:.3f} ms",
+                  server.drivers, board.datagrams, board.answers, board.all_refused(), refused, strangers, lost,
+                  longest.count(), std::chrono::duration<double, std::milli>(server.longest_gap).count()));
   const hm2::StepGenerators::Counts& steps = hostmot2.steps().counts();
   say_served(
       fmt::format("{} bites of the watchdog; {} lines in {} motions, {} clamped to the step times, {} ticks stale; "

@@ -89,7 +89,7 @@ TEST(Hm2Storm, RandomDatagramsNeverCrashAndNeverMakeTheCounterWrong) {
   EXPECT_GT(counts.all_refused(), kDatagrams / 10U);
   EXPECT_EQ(counts.answers, asked);
   EXPECT_GT(asked, 3000U);
-  EXPECT_GT(bench.steps.pins.size(), 3000U);
+  EXPECT_GT(bench.steps.pins.size(), 1000U);
   EXPECT_EQ(counts.refused[0], 0U);
   for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(bench.pins(n), bench.counter(n)) << "axis " << n;
   std::cout << kDatagrams << " random datagrams: " << counts.all_refused() << " refused, " << counts.answers

@@ -18,8 +18,11 @@ EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples" / "linuxcnc-
 CARD, DRIVER = "192.168.81.2", "192.168.81.1"
 USER = "nobody"
 PROGRAMS = ["unshare", "nsenter", "ip", "setpriv", "chrt", "halrun", "linuxcnc", "rtapi_app"]
-# A card is no process beside LinuxCNC, whose driver waits for an answer without sleeping. Where this is allowed.
+# Where this is allowed: a card is no process beside LinuxCNC, whose driver waits for its answers without sleeping; and
+# LinuxCNC's thread, which has no realtime kernel here, is late for hundreds of milliseconds on a busy machine. Only that
+# thread: programs of one priority wait for each other.
 CARD_PRIORITY = ["chrt", "-f", "5"]
+THREAD_PRIORITY = ["chrt", "-a", "-f", "-p", "3"]
 SKIP = 77
 
 
@@ -76,8 +79,8 @@ class Bench:
         inside = ["nsenter", "-t", str(self.holder.pid), "-n"]
         run(*inside, "ip", "addr", "add", f"{CARD}/24", "dev", "card")
         run(*inside, "ip", "link", "set", "card", "up")
-        allowed = subprocess.run([*CARD_PRIORITY, "true"], capture_output=True).returncode == 0
-        priority = CARD_PRIORITY if allowed else []
+        self.realtime = subprocess.run([*CARD_PRIORITY, "true"], capture_output=True).returncode == 0
+        priority = CARD_PRIORITY if self.realtime else []
         self.notes_file = self.folder / "server.txt"
         with self.notes_file.open("w") as notes:
             self.server = subprocess.Popen([*priority, *inside, trammel, "serve", "--hm2", CARD, *options], stdout=notes, stderr=notes)
@@ -113,8 +116,12 @@ class Bench:
         environment = {"HOME": "/tmp", "PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "LANG": "C.UTF-8"}
         self.output_file = self.folder / "output.txt"
         with self.output_file.open("w") as output:
-            return subprocess.Popen(["unshare", "-m", "-i", "-p", "-f", "--kill-child", "--mount-proc", "sh", "-c", mount, "-", *command],
+            process = subprocess.Popen(["unshare", "-m", "-i", "-p", "-f", "--kill-child", "--mount-proc", "sh", "-c", mount, "-", *command],
                                     stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=environment)
+        wait_until(lambda: rtapi_app() or process.poll() is not None, 20, "rtapi_app")
+        if self.realtime and rtapi_app():
+            subprocess.run([*THREAD_PRIORITY, str(rtapi_app())], capture_output=True)
+        return process
 
     def output(self):
         return self.output_file.read_text(errors="replace")
@@ -148,12 +155,13 @@ class Bench:
         places = re.search(r"pulses at the pins ([-\d ]+); counters ([-\d ]+);", notes)
         numbers = {name: float(number) for number, name in
                    re.findall(r"([\d.]+) (datagrams|answered|refused|bites|lines|ticks stale|lost on purpose|s left out)", notes)}
-        numbers["longest answer"] = float(re.search(r"longest answer ([\d.]+) ms", notes)[1])
+        for name in ("longest answer", "longest gap of a driver"):
+            numbers[name] = float(re.search(name + r" ([\d.]+) ms", notes)[1])
         return numbers, [int(n) for n in places[1].split()], [int(n) for n in places[2].split()]
 
 
 def rtapi_app():
-    """The process of the realtime threads, of this network alone."""
+    """The process of the realtime threads, of this network alone; None where there is none yet."""
     mine = os.readlink("/proc/self/ns/net")
     for entry in pathlib.Path("/proc").iterdir():
         try:
@@ -161,4 +169,4 @@ def rtapi_app():
                 return int(entry.name)
         except OSError:
             continue
-    raise AssertionError("no rtapi_app runs")
+    return None

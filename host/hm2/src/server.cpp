@@ -65,6 +65,10 @@ void Server::turn() {
 
 void Server::serve(const Datagram& datagram) {
   run_to(datagram.came);
+  // Of the driver's own making: the kernel's stamps do not know how late this process is.
+  if (last_driver_ == datagram.from) {
+    counts_.longest_gap = std::max<std::chrono::nanoseconds>(counts_.longest_gap, datagram.came - heard_);
+  }
   look_for_silence(datagram.came);
   if (!admit(datagram) || loses()) return;
   heard_ = std::max(heard_, datagram.came);
@@ -83,7 +87,7 @@ bool Server::admit(const Datagram& datagram) {
     return false;
   }
   if (!driver_) {
-    driver_ = datagram.from;
+    driver_ = last_driver_ = datagram.from;
     heard_ = datagram.came;
     ++counts_.drivers;
     settings_.note(fmt::format("driver {} has come", driver_->text()));

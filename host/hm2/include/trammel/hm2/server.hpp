@@ -29,7 +29,8 @@ class Server {
     std::uint64_t strangers = 0;  // datagrams of others while a driver was there
     std::uint64_t lost = 0;       // on purpose
     std::chrono::nanoseconds longest_answer{};
-    double lost_seconds = 0;  // that the card was too slow for
+    std::chrono::nanoseconds longest_gap{};  // from a datagram of the driver's to its next one
+    double lost_seconds = 0;                 // that the card was too slow for
   };
 
   // All must outlive it.
@@ -57,6 +58,7 @@ class Server {
   Settings settings_;
   std::mt19937_64 random_;
   std::optional<Peer> driver_;
+  Peer last_driver_;
   Clock::time_point heard_;
   Clock::time_point anchor_time_;
   std::uint64_t anchor_clock_ = 0;
