@@ -150,14 +150,14 @@ class Loop {
   std::optional<Bytes> late_;
 };
 
-double follow_sine(double lose, double twice, int* lost) {
+// `periods`: a multiple of 750, at whose end the sine is where it began.
+double follow_sine(int periods, double lose, double twice, int* lost) {
   Bench bench;
   bench.write(map_at::kWatchdogTimer, {kClock / 20 - 1});
   Loop loop(bench, storm_seed(), lose, twice);
-  constexpr int kPeriods = 1500;
-  const auto target = [](int n) { return 2000 * (1 - std::cos(2 * M_PI * n / 1500.0)); };  // pulses
-  for (int n = 0; n <= kPeriods; ++n) loop.period(target(n));
-  for (int n = 0; n < 200; ++n) loop.period(target(kPeriods));
+  const auto target = [](int n) { return 1000 * (1 - std::cos(2 * M_PI * n / 750.0)); };  // pulses
+  for (int n = 0; n <= periods; ++n) loop.period(target(n));
+  for (int n = 0; n < 100; ++n) loop.period(target(periods));
   EXPECT_EQ(bench.hostmot2.bites(), 0U);
   EXPECT_EQ(bench.pins(0), bench.counter(0));
   EXPECT_EQ(bench.pins(0), 0) << "it ends where it was told to";
@@ -167,17 +167,17 @@ double follow_sine(double lose, double twice, int* lost) {
 
 TEST(Hm2Storm, ALoopEndsAtItsTargetWithEveryHundredthDatagramLost) {
   int lost = 0;
-  const double farthest = follow_sine(0.01, 0, &lost);
+  const double farthest = follow_sine(1500, 0.01, 0, &lost);
   std::cout << lost << " datagrams lost; at most " << farthest << " pulses from the target\n";
   EXPECT_GT(lost, 15);
-  // A lost rate holds the one before: 8.4 pulses a period at the fastest change by 0.035 a period; a lost reading is
+  // A lost rate holds the one before: 8.4 pulses a period at the fastest, changing by 0.07 a period; a lost reading is
   // half of a period's way.
   EXPECT_LT(farthest, 20);
 }
 
 TEST(Hm2Storm, RatesThatComeTwiceOrLateAreNoMoreThanOldRates) {
-  const double alone = follow_sine(0, 0, nullptr);
-  const double farthest = follow_sine(0, 0.05, nullptr);
+  const double alone = follow_sine(750, 0, 0, nullptr);
+  const double farthest = follow_sine(750, 0, 0.05, nullptr);
   std::cout << "at most " << alone << " pulses from the target, " << farthest << " with 5 % repeated and 5 % late\n";
   EXPECT_LT(farthest, alone + 1);
 }
