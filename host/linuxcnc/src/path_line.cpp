@@ -49,7 +49,8 @@ bool is_rapid(const trammel_operation& operation) {
 
 std::string feed_word(const trammel_operation& operation) {
   if (!(operation.speed > 0)) throw PathRefusal("a motion with a feed of 0: give F");
-  return word_of('F', operation.speed * kSecondsPerMinute);
+  const double speed = operation.most_speed > 0 ? std::min(operation.speed, operation.most_speed) : operation.speed;
+  return word_of('F', speed * kSecondsPerMinute);
 }
 
 // The axes that the machine has; of these the ones that move, or all of `always`.
