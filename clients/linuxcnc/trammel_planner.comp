@@ -23,7 +23,8 @@ option extra_setup;
 
 #include "trammel_planner_path.h"
 
-static long long longest; /* ns, of one call */
+static long long longest;  /* ns, of one call */
+static TP_STRUCT* planner; /* motmod makes one */
 
 /* Every call that fills the ring or runs a period is timed. */
 static void time_call(long long began) {
@@ -158,7 +159,6 @@ int tpRunCycle(TP_STRUCT* tp, long period) {
   if (took > longest_cycle) longest_cycle = took;
   if (took > longest) longest = took;
   longest_call = longest;
-  link_ok = silent <= SILENT_PERIODS;
   stale_copies = ring.stale;
   queued = posted - begun;
   return result;
@@ -169,6 +169,7 @@ int tpCreate(TP_STRUCT* const tp, int size, int id) {
   if (ring.region == NULL) return TP_ERR_FAIL;
   memset(tp, 0, sizeof *tp);
   tp->queueSize = size;
+  planner = tp;
   rest(tp);
   return TP_ERR_OK;
 }

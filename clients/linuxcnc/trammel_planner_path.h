@@ -31,7 +31,7 @@ static unsigned char waits[TRAMMEL_OPERATIONS];    /* by slot: before it is publ
 static uint64_t posted, begun;                     /* segments */
 static uint64_t in_force_at, pose_in_force_at;     /* operations_done from which abort, clear, pose are in force */
 static uint64_t probes, refusals, session, beat;   /* as seen last */
-static unsigned silent;                            /* periods without a new beat */
+static unsigned silent = SILENT_PERIODS + 1;       /* periods without a new beat */
 static int clear_pending, pose_pending, reverse_told;
 static EmcPose pose_to_set;
 
@@ -194,32 +194,30 @@ static void take_probe(void) {
   status->probing = 0;
 }
 
-static void fail(TP_STRUCT* tp) {
+/* Once a servo period, in every mode of motmod. */
+static void watch_owner(TP_STRUCT* tp) {
+  const int replaced = session != 0 && ring.status.session != session;
+  if (replaced || session == 0) {
+    session = ring.status.session;
+    probes = ring.status.probes;
+    refusals = ring.status.refusals;
+    if (replaced) pose_in_force_at = UINT64_MAX; /* it knows no place of ours: until the next one is set */
+  }
+  if (ring.status.beat != beat) {
+    silent = 0;
+  } else if (silent <= SILENT_PERIODS) {
+    ++silent;
+  }
+  beat = ring.status.beat;
+  if (tp->done || (!replaced && silent <= SILENT_PERIODS)) return;
+  rtapi_print_msg(RTAPI_MSG_ERR, "trammel_planner: the process that owns the card %s: start `trammel linuxcnc`\n",
+                  replaced ? "was replaced in a motion" : "does not answer");
   status->motionFlag |= EMCMOT_MOTION_ERROR_BIT;
   forget_unpublished();
   rest(tp);
 }
 
-/* 0: the owner is there. */
-static int owner_lost(TP_STRUCT* tp) {
-  const int other = session != 0 && ring.status.session != session;
-  if (other || session == 0) {
-    session = ring.status.session;
-    probes = ring.status.probes;
-    refusals = ring.status.refusals;
-    begun = posted;
-    if (other) pose_in_force_at = UINT64_MAX; /* it knows no place of ours: until the next one is set */
-  }
-  silent = ring.status.beat == beat ? silent + 1 : 0;
-  beat = ring.status.beat;
-  if (!other && silent <= SILENT_PERIODS) return 0;
-  if (!tp->done) {
-    rtapi_print_msg(RTAPI_MSG_ERR, "trammel_planner: the process that owns the card %s: start `trammel linuxcnc`\n",
-                    other ? "was replaced in a motion" : "does not answer");
-    fail(tp);
-  }
-  return !other;
-}
+static int owner_answers(void) { return session != 0 && silent <= SILENT_PERIODS; }
 
 /* An operation that was refused, or a fault of the card. */
 static void take_refusal(TP_STRUCT* tp) {
@@ -233,7 +231,7 @@ static void take_refusal(TP_STRUCT* tp) {
 static int run_period(TP_STRUCT* tp) {
   int at_rest;
   ring_read_status(&ring);
-  if (owner_lost(tp)) return TP_ERR_WAITING;
+  if (!owner_answers()) return TP_ERR_WAITING;
   flush_pending();
   publish();
   follow(tp);

@@ -56,9 +56,13 @@ int tpQueueDepth(TP_STRUCT* const tp) { return tp->depth; }
 int tpActiveDepth(TP_STRUCT* const tp) { return tp->activeDepth; }
 int tpGetMotionType(TP_STRUCT* const tp) { return tp->motionType; }
 
-/* LinuxCNC waits with further motions. */
+/* LinuxCNC waits with further motions. motmod asks at the end of each servo period, whatever its mode. */
 int tcqFull(TC_QUEUE_STRUCT const* const queue) {
+  struct __comp_state* __comp_inst = __comp_first_inst;
   (void)queue;
+  ring_read_status(&ring);
+  watch_owner(planner);
+  link_ok = owner_answers();
   return posted - begun > MOST_QUEUED || ring_free(&ring) < RING_RESERVE;
 }
 

@@ -17,7 +17,7 @@
 
 namespace trammel::linuxcnc {
 
-inline constexpr std::uint32_t kPathClock = 400'000;
+inline constexpr std::uint32_t kPathClock = 200'000;
 
 // What LinuxCNC hands to its planner, as operations.
 class Operations {

@@ -2,6 +2,7 @@
 // tests in LinuxCNC need of `trammel linuxcnc`. Positions are fed back by LinuxCNC's own loop, from command to feedback.
 //
 //     path_owner NAME LOG [SURFACE]
+//     path_owner --run PROGRAM LOG     the same machine makes the program as `trammel run` does: the "path" lines alone
 //
 // The probe at input 2 touches where Z is at most SURFACE mm. Ends at SIGTERM and writes to LOG: a line "step AXIS
 // DIRECTION CYCLE" for each pulse, "probe X Y Z" for each probe, "end REFUSALS UNDER_RUNS".
@@ -14,12 +15,13 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "steps.hpp"
+#include "path_bench.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/linuxcnc/path_server.hpp"
 #include "trammel/sim/engine.hpp"
@@ -27,7 +29,7 @@
 namespace trammel::linuxcnc {
 namespace {
 
-constexpr std::uint32_t kOwnerClock = 400'000;
+constexpr std::uint32_t kOwnerClock = kPathClock;
 constexpr unsigned kProbeInput = 2;
 volatile std::sig_atomic_t asked_to_end = 0;
 
@@ -102,6 +104,16 @@ void write_log(const std::string& path, const test::Steps& steps, const std::vec
   log << fmt::format("end {} {}\n", refusals, under_runs);
 }
 
+int run_program(const std::string& program, const std::string& log) {
+  std::ifstream file(program);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::ofstream out(log);
+  for (const auto& [axis, direction] : runner_path(text, machine::default_machine())) {
+    out << fmt::format("path {} {}\n", axis, direction);
+  }
+  return 0;
+}
+
 int run(const std::string& name, const std::string& log, double surface) {
   trammel_region& region = map_region(name);
   const auto engine = sim::make_model_engine(sim::EngineOptions{4, kOwnerClock, false});
@@ -120,7 +132,8 @@ int run(const std::string& name, const std::string& log, double surface) {
   server.serve([&] {
     const std::uint64_t before = status.probes;
     ++status.beat;
-    status.flags = static_cast<unsigned>(TRAMMEL_STATUS_LINK) | (paced.touches() ? TRAMMEL_STATUS_PROBE : 0U);
+    status.flags = TRAMMEL_STATUS_LINK;
+    if (paced.touches()) status.flags |= TRAMMEL_STATUS_PROBE;
     server.write_status(status);
     if (status.probes != before) probes.push_back(status);
     write_status(region, status);
@@ -134,9 +147,10 @@ int run(const std::string& name, const std::string& log, double surface) {
 }  // namespace trammel::linuxcnc
 
 int main(int count, char** arguments) {
-  if (count < 3) return 2;
+  if (count < 3 || (std::string(arguments[1]) == "--run" && count < 4)) return 2;
   std::signal(SIGTERM, [](int) { trammel::linuxcnc::asked_to_end = 1; });
   try {
+    if (std::string(arguments[1]) == "--run") return trammel::linuxcnc::run_program(arguments[2], arguments[3]);
     return trammel::linuxcnc::run(arguments[1], arguments[2], count > 3 ? std::atof(arguments[3]) : -1e9);
   } catch (const std::exception& error) {
     fmt::print(stderr, "path_owner: {}\n", error.what());

@@ -1,6 +1,7 @@
 #include "path_lines.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <utility>
 
 #include "path_progress.hpp"
@@ -12,8 +13,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::chrono::nanoseconds kPeriod = 1ms;  // in which LinuxCNC hands over one operation
-// s without an operation before the first motion: LinuxCNC's task may be late by some periods.
-constexpr double kBetweenOperations = 0.025;
+// s without an operation before the first motion, and periods of the planner module: LinuxCNC's task may be late by
+// some, and where the module itself stands still nothing follows from it, up to a second.
+constexpr double kBetweenOperations = 0.03;
+constexpr std::uint64_t kBetweenPeriods = 30;
+constexpr double kLongestStall = 1;
 // s of motion that the card has still when the run ends for want of operations: the rest is planned in that time.
 constexpr double kReserve = 0.1;
 
@@ -46,8 +50,10 @@ bool PathLines::wait_for_operation() {
 bool PathLines::may_wait() const {
   if (server_.ending_ || server_.queue_.barrier()) return false;
   if (server_.progress_->any_sent()) return server_.progress_->seconds_left() > kReserve;
-  const double since = static_cast<double>(server_.now_.time - server_.last_came_);
-  return since < kBetweenOperations * server_.card_.identification().clock_hz;
+  const double clocks = static_cast<double>(server_.now_.time - server_.last_came_);
+  const double since = clocks / server_.card_.identification().clock_hz;
+  const bool stalled = server_.beat_ != 0 && server_.beat_ - server_.last_beat_ < kBetweenPeriods;
+  return since < (stalled ? kLongestStall : kBetweenOperations);
 }
 
 // A refused operation ends the run behind what stands before it. So does a probe: LinuxCNC waits for its end.

@@ -17,7 +17,8 @@ void PathServer::apply_overrides() {
     std::memcpy(&settings, &from, sizeof settings);
     __atomic_thread_fence(__ATOMIC_ACQUIRE);
     if (before % 2 != 0 || before != __atomic_load_n(&region_.path_settings_sequence, __ATOMIC_RELAXED)) continue;
-    if (settings.beat == 0) break;  // no planner module has written any yet
+    beat_ = settings.beat;
+    if (beat_ == 0) break;  // no planner module has written any yet
     set_ratio(driver::PieceClass::kFeed, settings.feed_scale);
     set_ratio(driver::PieceClass::kRapid, settings.rapid_scale);
     break;

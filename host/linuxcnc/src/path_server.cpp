@@ -118,11 +118,16 @@ void PathServer::set_pose(const Pose& pose) {
 // After each sleep of the bus.
 void PathServer::turn() {
   look();
-  if (queue_.take()) last_came_ = now_.time;
-  report_.operations_done = queue_.done();
   apply_overrides();
+  if (queue_.take()) note_came();
+  report_.operations_done = queue_.done();
   if (!(*meanwhile_)()) ending_ = true;
   stop_if_asked(now_);
+}
+
+void PathServer::note_came() {
+  last_came_ = now_.time;
+  last_beat_ = beat_;
 }
 
 void PathServer::look() {
@@ -170,7 +175,7 @@ void PathServer::run_section() {
   probing_ = false;
   probe_met_ = false;
   stop_asked_ = false;
-  last_came_ = now_.time;
+  note_came();
   run::RunSettings settings;
   settings.start = position_->millimetres();
   settings.stands_at = position_->pulses();

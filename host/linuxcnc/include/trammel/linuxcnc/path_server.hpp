@@ -58,6 +58,7 @@ class PathServer final : public PathSide {
 
   void turn();
   void look();
+  void note_came();
   void follow_segments();
   void measure_speed(const driver::Snapshot& now);
   void stop_if_asked(const driver::Snapshot& now);
@@ -92,7 +93,9 @@ class PathServer final : public PathSide {
   double rapid_scale_ = -1;
   bool holding_ = false;
   driver::Snapshot now_;
+  std::uint64_t beat_ = 0;       // of the planner module; 0: none yet
   std::uint64_t last_came_ = 0;  // card clock at which operations came last
+  std::uint64_t last_beat_ = 0;  // and the beat then
   std::uint64_t speed_time_ = 0;
   Pose speed_at_{};
   trammel_status report_{};
