@@ -35,7 +35,7 @@
 #define TRAMMEL_REGION_FOLDER "/dev/shm"
 #define TRAMMEL_REGION_PREFIX "trammel-linuxcnc."
 /* Raised with every change of this layout. Each side writes it when it attaches, and leaves another version alone. */
-#define TRAMMEL_REGION_VERSION 1u
+#define TRAMMEL_REGION_VERSION 2u
 
 enum { TRAMMEL_LOCK_OWNER = 0, TRAMMEL_LOCK_HAL = 1, TRAMMEL_LOCK_PLANNER = 2 };
 
@@ -121,11 +121,16 @@ struct trammel_status {
   double pulses_per_unit[TRAMMEL_JOINTS]; /* in force */
   uint32_t joints;                        /* of the card */
   /* Of the path operations. */
-  uint64_t operations_done; /* operations taken, all of them in order */
+  uint64_t operations_done; /* counts those dealt with, in order: segments are queued, all others are in force */
   uint64_t segments_begun;  /* number of the segment under way (struct trammel_operation.segment), or the last one */
-  double distance_to_go;    /* of it, machine units */
+  double distance_to_go;    /* of it, machine units: the straight way to its end */
   double path_speed;        /* machine units/s */
-  int32_t refusal;          /* id of the operation that was refused, and what: text; 0: none */
+  double pose[TRAMMEL_POSE];       /* where the card stands on the path, as LinuxCNC counts; a multiple of a pulse */
+  uint64_t probes;                 /* counts probing segments that have ended */
+  uint32_t probe_tripped;          /* the last one met its edge */
+  double probe_pose[TRAMMEL_POSE]; /* there, as the card captured it; where it ended, if it did not */
+  uint64_t refusals;               /* counts what ended a path: refused operations, faults of the card; see text */
+  int32_t refusal;                 /* id of the last one's operation */
   char text[128];           /* UTF-8, ends with 0: the last refusal or stop in words */
 };
 
@@ -138,7 +143,7 @@ enum trammel_operation_kind {
   TRAMMEL_RESUME = 4,
   TRAMMEL_ABORT = 5,   /* ramp on the path, then drop what is queued */
   TRAMMEL_CLEAR = 6,   /* drop what is queued at once, as after a fault */
-  TRAMMEL_SET_POSE = 7 /* the pose that LinuxCNC takes the machine to stand at; only at rest */
+  TRAMMEL_SET_POSE = 7 /* `end`: the pose that LinuxCNC takes the machine to stand at; only at rest */
 };
 
 enum { TRAMMEL_EXACT_STOP = 0, TRAMMEL_EXACT_PATH = 1, TRAMMEL_BLEND = 2 }; /* G61.1, G61, G64 P */
@@ -153,6 +158,7 @@ struct trammel_operation {
   uint32_t scale_by_feed; /* the feed override acts */
   uint32_t outputs;       /* bit n: digital output n is switched when the segment begins */
   uint32_t levels;        /* their levels */
+  uint32_t probe_away;    /* motion 5: until the probe is free, else until it touches */
   double end[TRAMMEL_POSE];
   double centre[3], normal[3];
   double speed;             /* programmed, machine units/s */

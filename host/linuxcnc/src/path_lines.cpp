@@ -1,0 +1,75 @@
+#include "path_lines.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "path_progress.hpp"
+#include "trammel/driver/low_level/requests.hpp"
+
+namespace trammel::linuxcnc {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::chrono::nanoseconds kPeriod = 1ms;  // in which LinuxCNC hands over one operation
+// s without an operation before the first motion: LinuxCNC's task may be late by some periods.
+constexpr double kBetweenOperations = 0.025;
+// s of motion that the card has still when the run ends for want of operations: the rest is planned in that time.
+constexpr double kReserve = 0.1;
+
+}  // namespace
+
+bool PathLines::next(std::string_view& line) {
+  while (pending_.empty()) {
+    if (ended_ || !wait_for_operation()) return false;
+    const trammel_operation operation = *server_.queue_.front();
+    server_.queue_.pop();
+    take(operation);
+  }
+  given_ = std::move(pending_.front());
+  pending_.pop_front();
+  ++lines_;
+  line = given_;
+  return true;
+}
+
+bool PathLines::wait_for_operation() {
+  while (server_.queue_.front() == nullptr) {
+    if (!may_wait()) return false;
+    // Nobody else serves the card's watchdog and looks at what was asked for.
+    driver::serve_requests(server_.card_);
+    server_.bus_.sleep(kPeriod);
+  }
+  return true;
+}
+
+bool PathLines::may_wait() const {
+  if (server_.ending_ || server_.queue_.barrier()) return false;
+  if (server_.progress_->any_sent()) return server_.progress_->seconds_left() > kReserve;
+  const double since = static_cast<double>(server_.now_.time - server_.last_came_);
+  return since < kBetweenOperations * server_.card_.identification().clock_hz;
+}
+
+// A refused operation ends the run behind what stands before it. So does a probe: LinuxCNC waits for its end.
+void PathLines::take(const trammel_operation& operation) {
+  std::string motion;
+  try {
+    motion = path_line(operation, from_, server_.machine_);
+  } catch (const PathRefusal& refusal) {
+    server_.refuse(operation.id, refusal.what());
+    ended_ = true;
+    return;
+  }
+  const std::string modes = path_modes(operation, server_.units_);
+  if (modes != modes_) pending_.push_back(modes);
+  modes_ = modes;
+  if (!motion.empty()) pending_.push_back(std::move(motion));
+  from_ = end_of(operation);
+  server_.under_way_.push_back({lines_ + pending_.size(), operation.segment, operation.id, from_});
+  if (is_probe(operation)) {
+    server_.probing_ = true;
+    ended_ = true;
+  }
+}
+
+}  // namespace trammel::linuxcnc
