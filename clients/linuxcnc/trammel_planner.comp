@@ -197,6 +197,7 @@ int tpSetPos(TP_STRUCT* tp, EmcPose const* const pose) {
 
 int tpAbort(TP_STRUCT* tp) {
   if (!tp->aborting && !tp->done) begin_abort(tp);
+  tp->synchronized = 0;
   drop_outputs(tp);
   return TP_ERR_OK;
 }

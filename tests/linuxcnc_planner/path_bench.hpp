@@ -102,7 +102,7 @@ class PathBench {
     unsigned period = 0;
     server.serve([&] {
       status = {};
-      server.write_status(status);
+      server.report(status);
       if (each) each(period);
       if (given < operations.size() && !stalled) post(operations[given++]);
       if (++period > 200'000) throw std::logic_error("it does not end");

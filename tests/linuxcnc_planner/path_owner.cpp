@@ -134,7 +134,7 @@ int run(const std::string& name, const std::string& log, double surface) {
     ++status.beat;
     status.flags = TRAMMEL_STATUS_LINK;
     if (paced.touches()) status.flags |= TRAMMEL_STATUS_PROBE;
-    server.write_status(status);
+    server.report(status);
     if (status.probes != before) probes.push_back(status);
     write_status(region, status);
     return asked_to_end == 0;

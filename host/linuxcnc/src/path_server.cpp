@@ -201,6 +201,7 @@ void PathServer::run_section() {
   }
   end_section();
   look();
+  if (now_.status.faulted) throw driver::FaultError(card_.read_faults(), card_.read_fault_text());
   // A hold or a ratio that was asked for in the last moment.
   driver::serve_requests(card_);
 }
@@ -231,7 +232,7 @@ void PathServer::refuse(std::int32_t id, const std::string& text) {
   ++report_.refusals;
 }
 
-void PathServer::write_status(trammel_status& status) const {
+void PathServer::report(trammel_status& status) const {
   status.operations_done = report_.operations_done;
   status.segments_begun = report_.segments_begun;
   status.distance_to_go = report_.distance_to_go;

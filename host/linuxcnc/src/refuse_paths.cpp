@@ -47,7 +47,9 @@ class RefusedPaths final : public PathSide {
     status.distance_to_go = 0;
     status.path_speed = 0;
     status.refusal = refusal_;
-    if (refusal_ == 0) return;
+    status.refusals = refusals_;
+    status.flags |= TRAMMEL_STATUS_AT_REST;
+    if (refusals_ == 0) return;
     const std::size_t length = std::min(text_.size(), sizeof(status.text) - 1);
     std::fill(std::begin(status.text), std::end(status.text), '\0');
     std::copy_n(text_.begin(), length, std::begin(status.text));
@@ -59,21 +61,20 @@ class RefusedPaths final : public PathSide {
     std::uint64_t tail = region_.operation_tail;
     for (; tail != head; ++tail) {
       const trammel_operation& operation = region_.operations[tail % TRAMMEL_OPERATIONS];
-      ++done_;
-      if (!moves(operation.kind)) {
-        refusal_ = 0;
-        continue;
-      }
-      refusal_ = operation.id == 0 ? -1 : operation.id;
+      if (!moves(operation.kind)) continue;
+      refusal_ = operation.id;
+      ++refusals_;
       text_ = fmt::format("{} was refused: this program follows targets, and has no planner for paths",
                           name_of_operation(operation.kind));
     }
+    done_ = tail;
     __atomic_store_n(&region_.operation_tail, tail, __ATOMIC_RELEASE);
   }
 
   trammel_region& region_;
   std::uint64_t done_ = 0;
   std::int32_t refusal_ = 0;
+  std::uint64_t refusals_ = 0;
   std::string text_;
 };
 

@@ -40,10 +40,10 @@ class PathServer final : public PathSide {
 
   // Runs what the ring brings. `meanwhile` is called about once a millisecond, also while the card moves; when it gives
   // false, the motion is stopped on the path and serve() returns with the card at rest. Throws driver::LinkError, and
-  // what `meanwhile` throws. Faults of the card end the path and show in write_status().
+  // what `meanwhile` throws. Faults of the card end the path and show in report().
   void serve(const std::function<bool()>& meanwhile) override;
   // The part of the status that tells of path operations, and TRAMMEL_STATUS_AT_REST among its flags.
-  void write_status(trammel_status& status) const override;
+  void report(trammel_status& status) const override;
   // Other step times or scales: only outside serve(). Where the machine stands is asked again.
   void set_machine(const machine::Machine& machine);
 
