@@ -258,7 +258,7 @@ int tpSetTermCond(TP_STRUCT* tp, int condition, double tolerance) {
 
 EXTRA_SETUP() {
   const char* name = getenv("TRAMMEL_LINUXCNC");
-  const int error = ring_attach(&ring, name != NULL && name[0] != '\0' ? name : "0");
+  const int error = ring_attach(&ring, name != NULL && name[0] != '\0' ? name : "card");
   (void)__comp_inst, (void)prefix, (void)extra_arg;
   if (error == -EBUSY) {
     rtapi_print_msg(RTAPI_MSG_ERR, "trammel_planner: the shared memory is in use by another planner module, or of "

@@ -75,8 +75,7 @@ class Operations {
 
 class PathBench {
  public:
-  explicit PathBench(const machine::Machine& of = machine::default_machine(),
-                     PathUnits units = PathUnits::kMillimetres)
+  explicit PathBench(const machine::Machine& of = machine::default_machine(), PathUnits units = PathUnits::kMillimetres)
       : machine(of), server(*region, card, path_bus, machine, units) {
     engine->set_sink(&steps);
   }
@@ -102,7 +101,7 @@ class PathBench {
     unsigned period = 0;
     server.serve([&] {
       status = {};
-      server.report(status);
+      server.write_status(status);
       if (each) each(period);
       if (given < operations.size() && !stalled) post(operations[given++]);
       if (++period > 200'000) throw std::logic_error("it does not end");

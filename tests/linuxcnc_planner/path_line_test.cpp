@@ -47,8 +47,7 @@ TEST(PathLine, ExtremeNumbers) {
   EXPECT_THROW(path_number(std::nan("")), PathRefusal);
 }
 
-std::string first_line(const Operations& operations, const Pose& from = {},
-                       PathUnits units = PathUnits::kMillimetres) {
+std::string first_line(const Operations& operations, const Pose& from = {}, PathUnits units = PathUnits::kMillimetres) {
   const trammel_operation& operation = operations.all.front();
   return path_modes(operation, units) + "|" + path_line(operation, from, machine::default_machine());
 }

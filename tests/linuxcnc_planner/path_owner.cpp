@@ -1,5 +1,6 @@
 // A process that owns a simulated card and serves the planner module alone, at the pace of the wall clock: what the
-// tests in LinuxCNC need of `trammel linuxcnc`. Positions are fed back by LinuxCNC's own loop, from command to feedback.
+// tests in LinuxCNC need of `trammel linuxcnc`. Positions are fed back by LinuxCNC's own loop, from command to
+// feedback.
 //
 //     path_owner NAME LOG [SURFACE]
 //     path_owner --run PROGRAM LOG     the same machine makes the program as `trammel run` does: the "path" lines alone
@@ -134,7 +135,7 @@ int run(const std::string& name, const std::string& log, double surface) {
     ++status.beat;
     status.flags = TRAMMEL_STATUS_LINK;
     if (paced.touches()) status.flags |= TRAMMEL_STATUS_PROBE;
-    server.report(status);
+    server.write_status(status);
     if (status.probes != before) probes.push_back(status);
     write_status(region, status);
     return asked_to_end == 0;

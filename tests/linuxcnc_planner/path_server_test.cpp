@@ -76,7 +76,8 @@ TEST(PathServer, RandomProgramsMakeTheStepsOfTheRunner) {
         const double j = (next_y - y) / 2;
         const bool clockwise = random.below(2) == 0;
         both.operations.arc({next_x, next_y}, {x + i, y + j, 0}, 2, clockwise ? -1 : 0, 100);
-        both.text += fmt::format("G{} X{:.4f} Y{:.4f} I{:.6f} J{:.6f} F6000\n", clockwise ? 2 : 3, next_x, next_y, i, j);
+        both.text +=
+            fmt::format("G{} X{:.4f} Y{:.4f} I{:.6f} J{:.6f} F6000\n", clockwise ? 2 : 3, next_x, next_y, i, j);
       } else {
         both.operations.feed({next_x, next_y}, 100);
         both.text += fmt::format("G1 X{:.4f} Y{:.4f} F6000\n", next_x, next_y);
@@ -109,8 +110,8 @@ TEST(PathServer, StallsOfTheRealtimeSideChangeNoPulse) {
   quiet.run(long_way().all);
   PathBench stalled;
   stalled.run(long_way().all, [&](unsigned period) {
-    stalled.stalled = (period >= 10 && period < 310) || (period >= 1000 && period < 1300) ||
-                      (period >= 2000 && period < 2300);
+    stalled.stalled =
+        (period >= 10 && period < 310) || (period >= 1000 && period < 1300) || (period >= 2000 && period < 2300);
   });
   PathBench later;
   later.run(long_way().all, [&](unsigned period) { later.stalled = period >= 1000 && period < 1900; });

@@ -9,6 +9,18 @@
 
 namespace trammel::linuxcnc {
 
+// Of whoever moves the card otherwise nothing is known here: the full ratio is theirs.
+void PathServer::begin_overrides() {
+  feed_scale_ = rapid_scale_ = -1;
+  for (const auto piece_class : {driver::PieceClass::kFeed, driver::PieceClass::kRapid}) set_ratio(piece_class, 1);
+}
+
+void PathServer::end_overrides() {
+  set_hold(false);
+  card_.set_ratio(driver::PieceClass::kFeed, driver::Card::kFullRatio);
+  if (card_.parts().time_base.has_classes()) card_.set_ratio(driver::PieceClass::kRapid, driver::Card::kFullRatio);
+}
+
 void PathServer::apply_overrides() {
   const trammel_path_settings& from = region_.path_settings;
   trammel_path_settings settings{};

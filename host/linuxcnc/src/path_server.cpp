@@ -69,7 +69,6 @@ PathServer::PathServer(trammel_region& region, driver::Card& card, PathBus& bus,
     : region_(region), card_(card), bus_(bus), units_(units), machine_(without_limits(machine)), queue_(region) {
   report_.operations_done = queue_.done();
   position_ = std::make_unique<run::MachinePosition>(card_.read_snapshot(), machine_);
-  for (const auto piece_class : {driver::PieceClass::kFeed, driver::PieceClass::kRapid}) set_ratio(piece_class, 1);
 }
 
 PathServer::~PathServer() = default;
@@ -88,11 +87,13 @@ void PathServer::serve(const std::function<bool()>& meanwhile) {
   ending_ = false;
   bus_.set_meanwhile([this] { turn(); });
   const NoLonger no_longer{bus_};
+  begin_overrides();
   look();
   while (!ending_) {
     idle();
     bus_.sleep(kIdle);
   }
+  end_overrides();
 }
 
 // While the card stands.
@@ -232,7 +233,7 @@ void PathServer::refuse(std::int32_t id, const std::string& text) {
   ++report_.refusals;
 }
 
-void PathServer::report(trammel_status& status) const {
+void PathServer::write_status(trammel_status& status) const {
   status.operations_done = report_.operations_done;
   status.segments_begun = report_.segments_begun;
   status.distance_to_go = report_.distance_to_go;
@@ -244,6 +245,8 @@ void PathServer::report(trammel_status& status) const {
   status.refusals = report_.refusals;
   status.refusal = report_.refusal;
   if (report_.refusals != 0) std::copy(std::begin(report_.text), std::end(report_.text), std::begin(status.text));
+  // A card that stands is not at the path's end while operations wait for their run.
+  status.flags &= ~std::uint32_t{TRAMMEL_STATUS_AT_REST};
   if (!progress_ && queue_.empty() && !now_.status.busy) status.flags |= TRAMMEL_STATUS_AT_REST;
 }
 

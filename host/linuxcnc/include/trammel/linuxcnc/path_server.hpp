@@ -40,10 +40,10 @@ class PathServer final : public PathSide {
 
   // Runs what the ring brings. `meanwhile` is called about once a millisecond, also while the card moves; when it gives
   // false, the motion is stopped on the path and serve() returns with the card at rest. Throws driver::LinkError, and
-  // what `meanwhile` throws. Faults of the card end the path and show in report().
+  // what `meanwhile` throws. Faults of the card end the path and show in write_status().
   void serve(const std::function<bool()>& meanwhile) override;
   // The part of the status that tells of path operations, and TRAMMEL_STATUS_AT_REST among its flags.
-  void report(trammel_status& status) const override;
+  void write_status(trammel_status& status) const override;
   // Other step times or scales: only outside serve(). Where the machine stands is asked again.
   void set_machine(const machine::Machine& machine);
 
@@ -62,7 +62,9 @@ class PathServer final : public PathSide {
   void follow_segments();
   void measure_speed(const driver::Snapshot& now);
   void stop_if_asked(const driver::Snapshot& now);
+  void begin_overrides();
   void apply_overrides();
+  void end_overrides();
   void set_ratio(driver::PieceClass piece_class, double scale);
   void set_hold(bool hold);
   void idle();

@@ -121,17 +121,17 @@ struct trammel_status {
   double pulses_per_unit[TRAMMEL_JOINTS]; /* in force */
   uint32_t joints;                        /* of the card */
   /* Of the path operations. */
-  uint64_t operations_done; /* counts those dealt with, in order: segments are queued, all others are in force */
-  uint64_t segments_begun;  /* number of the segment under way (struct trammel_operation.segment), or the last one */
-  double distance_to_go;    /* of it, machine units: the straight way to its end */
-  double path_speed;        /* machine units/s */
-  double pose[TRAMMEL_POSE];       /* where the card stands on the path, as LinuxCNC counts; a multiple of a pulse */
-  uint64_t probes;                 /* counts probing segments that have ended */
-  uint32_t probe_tripped;          /* the last one met its edge */
+  uint64_t operations_done;  /* counts those dealt with, in order: segments are queued, all others are in force */
+  uint64_t segments_begun;   /* number of the segment under way (struct trammel_operation.segment), or the last one */
+  double distance_to_go;     /* of it, machine units: the straight way to its end */
+  double path_speed;         /* machine units/s */
+  double pose[TRAMMEL_POSE]; /* where the card stands on the path, as LinuxCNC counts; a multiple of a pulse */
+  uint64_t probes;           /* counts probing segments that have ended */
+  uint32_t probe_tripped;    /* the last one met its edge */
   double probe_pose[TRAMMEL_POSE]; /* there, as the card captured it; where it ended, if it did not */
   uint64_t refusals;               /* counts what ended a path: refused operations, faults of the card; see text */
   int32_t refusal;                 /* id of the last one's operation */
-  char text[128];           /* UTF-8, ends with 0: the last refusal or stop in words */
+  char text[128];                  /* UTF-8, ends with 0: the last refusal or stop in words */
 };
 
 /* ---- from the planner module: path operations, in order ---- */
