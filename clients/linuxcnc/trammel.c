@@ -267,13 +267,15 @@ int rtapi_app_main(void) {
   error = link_attach(&card.link, name);
   if (error != 0) return refuse(error);
   component = hal_init("trammel");
-  if (component < 0) return component;
-  error = export_all();
-  if (error != 0) {
-    hal_exit(component);
-    return error;
-  }
-  return hal_ready(component);
+  error = component < 0 ? component : export_all();
+  if (error == 0) return hal_ready(component);
+  if (component >= 0) hal_exit(component);
+  link_detach(&card.link);
+  return error;
 }
 
-void rtapi_app_exit(void) { hal_exit(component); }
+/* LinuxCNC has stopped its threads before. */
+void rtapi_app_exit(void) {
+  hal_exit(component);
+  link_detach(&card.link);
+}

@@ -11,6 +11,7 @@
 
 struct link {
   struct ring ring; /* the region and the status; operations are the planner module's */
+  int file;         /* holds the lock */
   uint64_t number;  /* of the last period, dropped ones included */
   uint64_t head;
   int64_t times[TRAMMEL_PERIODS]; /* when the last ones began, by their numbers */
@@ -24,7 +25,7 @@ static int link_path(char* path, size_t size, const char* name) {
 }
 
 /* Makes the region where it does not exist. 0, or -errno; -EBUSY: another component has it; -EPROTO: its owner knows
-   another layout. The descriptor stays open: it holds the lock. */
+   another layout. */
 static int link_attach(struct link* link, const char* name) {
   char path[128];
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = TRAMMEL_LOCK_HAL, .l_len = 1};
@@ -55,9 +56,17 @@ static int link_attach(struct link* link, const char* name) {
     return -EPROTO;
   }
   region->version_hal = TRAMMEL_REGION_VERSION;
+  link->file = fd;
   link->ring.region = region;
   link->head = __atomic_load_n(&region->period_head, __ATOMIC_RELAXED);
   return 0;
+}
+
+static void link_detach(struct link* link) {
+  if (link->ring.region == NULL) return;
+  munmap(link->ring.region, sizeof *link->ring.region);
+  close(link->file);
+  link->ring.region = NULL;
 }
 
 /* The owner has attached, and knows this layout. */

@@ -9,10 +9,10 @@
 #include "trammel_planner_ring.h"
 
 enum {
-  KEPT = 4096,           /* segments; more than the ring and the owner's queue hold */
-  MOST_QUEUED = 1500,    /* segments that have not begun, before LinuxCNC is told to wait */
-  RING_RESERVE = 64,     /* slots for operations that are no segments */
-  SILENT_PERIODS = 500   /* of the owner: it is gone or stopped */
+  KEPT = 4096,         /* segments; more than the ring and the owner's queue hold */
+  MOST_QUEUED = 1500,  /* segments that have not begun, before LinuxCNC is told to wait */
+  RING_RESERVE = 64,   /* slots for operations that are no segments */
+  SILENT_PERIODS = 500 /* of the owner: it is gone or stopped */
 };
 enum { WAIT_NOT = 0, WAIT_AT_SPEED = 1, WAIT_PROBE = 2 };
 
@@ -26,12 +26,12 @@ struct segment {
 };
 
 static struct ring ring;
-static struct segment segments[KEPT];              /* by number */
-static unsigned char waits[TRAMMEL_OPERATIONS];    /* by slot: before it is published */
-static uint64_t posted, begun;                     /* segments */
-static uint64_t in_force_at, pose_in_force_at;     /* operations_done from which abort, clear, pose are in force */
-static uint64_t probes, refusals, session, beat;   /* as seen last */
-static unsigned silent;                            /* periods without a new beat */
+static struct segment segments[KEPT];            /* by number */
+static unsigned char waits[TRAMMEL_OPERATIONS];  /* by slot: before it is published */
+static uint64_t posted, begun;                   /* segments */
+static uint64_t in_force_at, pose_in_force_at;   /* operations_done from which abort, clear, pose are in force */
+static uint64_t probes, refusals, session, beat; /* as seen last */
+static unsigned silent;                          /* periods without a new beat */
 static int clear_pending, pose_pending, reverse_told;
 static EmcPose pose_to_set;
 

@@ -22,8 +22,8 @@
 
 struct ring {
   struct trammel_region* region;
-  uint64_t head;    /* published */
-  uint64_t written; /* filled; those from head on are not published yet */
+  uint64_t head;                /* published */
+  uint64_t written;             /* filled; those from head on are not published yet */
   struct trammel_status status; /* last good copy */
   uint32_t stale;               /* copies that failed */
 };

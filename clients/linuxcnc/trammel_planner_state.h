@@ -50,7 +50,9 @@ int tpGetPos(TP_STRUCT const* const tp, EmcPose* const pose) {
 }
 
 int tpGetExecId(TP_STRUCT* tp) { return tp->execId; }
-struct state_tag_t tpGetExecTag(TP_STRUCT* const tp) { return tp->execTag; }
+struct state_tag_t tpGetExecTag(TP_STRUCT* const tp) {
+  return tp->execTag;
+}
 int tpIsDone(TP_STRUCT* const tp) { return tp->done; }
 int tpQueueDepth(TP_STRUCT* const tp) { return tp->depth; }
 int tpActiveDepth(TP_STRUCT* const tp) { return tp->activeDepth; }
