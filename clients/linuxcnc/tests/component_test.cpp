@@ -358,6 +358,17 @@ TEST_F(Component, PathModeEchoesTheCommandWhileTheMachineIsOn) {
   EXPECT_EQ(feedback(0), 0.5) << "the card's, which still ramps";
 }
 
+TEST_F(Component, PathModeShowsTheCardsPositionAfterAStop) {
+  stub::bit("trammel.planner-module") = true;
+  switch_on();
+  stub::bit("trammel.coord-mode") = true;
+  period([] { command(0) = 5; });
+  stop(3);
+  status_.position[0] = 40;
+  periods(2);
+  EXPECT_EQ(feedback(0), 0.5);
+}
+
 TEST_F(Component, WatchdogBitAsksToClearWhenItIsWrittenFalse) {
   periods(2);
   status_.fault = 1U << 14U;
