@@ -16,7 +16,8 @@ MODULE_DESCRIPTION("A Trammel stepper-motion card, by the process that owns it")
 MODULE_LICENSE("GPL");
 
 static char* name = NULL;
-RTAPI_MP_STRING(name, "of the shared memory, as `trammel linuxcnc --name` has it; default: $TRAMMEL_LINUXCNC, else 0");
+RTAPI_MP_STRING(name,
+                "of the shared memory, as `trammel linuxcnc --name` has it; default: $TRAMMEL_LINUXCNC, else card");
 static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, 1 to 8");
 
@@ -116,9 +117,18 @@ static int read_status(long period) {
   return fresh;
 }
 
-static void keep_longest(hal_u32_t* longest, long long began) {
-  const long long took = rtapi_get_time() - began;
-  if (took > *longest) *longest = took > UINT32_MAX ? UINT32_MAX : (hal_u32_t)took;
+static void keep_most(hal_u32_t* most, long long value) {
+  if (value > *most) *most = value > UINT32_MAX ? UINT32_MAX : (hal_u32_t)value;
+}
+
+/* What stalls the motion, if anything does: LinuxCNC's thread, or the owner. */
+static void measure(long long now, int fresh) {
+  if (card.read_before != 0) keep_most(card.pins->longest_period, now - card.read_before);
+  card.read_before = now;
+  if (card.mode == FOLLOWING && card.fresh_before != 0) {
+    keep_most(card.pins->longest_silence, now - card.fresh_before);
+  }
+  if (fresh) card.fresh_before = now;
 }
 
 static void read_period(void* unused, long period) {
@@ -126,6 +136,7 @@ static void read_period(void* unused, long period) {
   (void)unused;
   card.began = rtapi_get_time();
   fresh = read_status(period);
+  measure(card.began, fresh);
   watch(&card);
   echo = card.mode == FOLLOWING && on_path(&card);
   for (n = 0; n < card.joint_count; ++n) {
@@ -136,7 +147,7 @@ static void read_period(void* unused, long period) {
   read_watchdog();
   read_card();
   count_errors(fresh);
-  keep_longest(card.pins->longest_read, card.began);
+  keep_most(card.pins->longest_read, rtapi_get_time() - card.began);
 }
 
 static void write_settings(void) {
@@ -225,7 +236,7 @@ static void write_period(void* unused, long period) {
   write_settings();
   send_period(card.began != 0 ? card.began : began, period);
   card.began = 0;
-  keep_longest(card.pins->longest_write, began);
+  keep_most(card.pins->longest_write, rtapi_get_time() - began);
 }
 
 static int refuse(int error) {
@@ -256,7 +267,7 @@ int rtapi_app_main(void) {
   const char* environment = getenv("TRAMMEL_LINUXCNC");
   int error;
   if (name == NULL || name[0] == '\0') {
-    name = (char*)(environment != NULL && environment[0] != '\0' ? environment : "0");
+    name = (char*)(environment != NULL && environment[0] != '\0' ? environment : "card");
   }
   if (joints < 1 || joints > TRAMMEL_JOINTS) {
     rtapi_print_msg(RTAPI_MSG_ERR, "trammel: joints=%d: 1 to %d\n", joints, TRAMMEL_JOINTS);

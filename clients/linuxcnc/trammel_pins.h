@@ -22,7 +22,8 @@ struct card_pins {
   hal_bit_t *hold, *clear, *coord_mode;
   hal_bit_t *probe, *fault, *link_ok, *session_lost, *packet_error, *watchdog;
   hal_bit_t *input[CARD_INPUTS], *input_not[CARD_INPUTS];
-  hal_u32_t *stop_cause, *underrun, *late, *refused, *ahead, *packet_error_total, *longest_read, *longest_write;
+  hal_u32_t *stop_cause, *underrun, *late, *refused, *ahead, *packet_error_total, *longest_read, *longest_write,
+      *longest_period, *longest_silence;
   hal_s32_t* packet_error_level;
   hal_float_t* latency;
   hal_u32_t lead_periods, link_periods, test_drop_one_in; /* parameters from here on */
@@ -78,6 +79,8 @@ static int export_card(struct card_pins* c, int id) {
   bad |= hal_pin_u32_newf(HAL_OUT, &c->packet_error_total, id, "trammel.packet-error-total");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->longest_read, id, "trammel.longest-read");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->longest_write, id, "trammel.longest-write");
+  bad |= hal_pin_u32_newf(HAL_OUT, &c->longest_period, id, "trammel.longest-period");
+  bad |= hal_pin_u32_newf(HAL_OUT, &c->longest_silence, id, "trammel.longest-silence");
   bad |= hal_pin_s32_newf(HAL_OUT, &c->packet_error_level, id, "trammel.packet-error-level");
   bad |= hal_pin_float_newf(HAL_OUT, &c->latency, id, "trammel.latency");
   bad |= hal_param_u32_newf(HAL_RW, &c->lead_periods, id, "trammel.lead-periods");

@@ -422,6 +422,15 @@ TEST_F(Component, LatencyIsTheAgeOfTheCardsNewestPeriodAndWhatIsQueued) {
   EXPECT_NEAR(stub::real("trammel.latency"), 0.004, 1e-9);
 }
 
+TEST_F(Component, TellsItsLongestPeriodAndTheOwnersLongestSilence) {
+  switch_on();
+  periods(3, false);
+  stub::now += 4 * kPeriod;
+  periods(2);
+  EXPECT_EQ(stub::u32("trammel.longest-period"), 5 * kPeriod);
+  EXPECT_EQ(stub::u32("trammel.longest-silence"), 8 * kPeriod);
+}
+
 TEST_F(Component, HoldsItsLockFromLoadingToUnloading) {
   const auto lock = [this] {
     const int file = open(path_.c_str(), O_RDWR);
