@@ -41,7 +41,8 @@ struct card {
   struct joint joints[TRAMMEL_JOINTS];
   int joint_count;
   enum mode mode;
-  long long began; /* ns, of this period; 0: `read` does not run */
+  long long began;                     /* ns, of this period; 0: `read` does not run */
+  long long read_before, fresh_before; /* ns: when `read` ran last, and when it last met a new beat */
   uint64_t beat, session;
   uint32_t silent;     /* periods without a new beat */
   uint32_t waited;     /* periods in WAITING */
