@@ -56,7 +56,6 @@ net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
 net y joint.1.motor-pos-cmd => joint.1.motor-pos-fb
 net z joint.2.motor-pos-cmd => joint.2.motor-pos-fb
 net at-speed => spindle.0.at-speed
-sets at-speed 1
 net link trammel-planner.link-ok => motion.enable
 net user-enable iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
 net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared

@@ -129,6 +129,33 @@ def pause_and_abort():
     return f"on the path up to step {same} of {len(whole)}"
 
 
+OUTPUTS = """G21 G90 G17 G61
+F1200
+G0 X1
+M3 S1000
+G1 X4
+M62 P1
+M67 E0 Q2.5
+G1 X8
+M63 P1
+M62 P2
+G1 X12
+M2
+"""
+
+
+def outputs():
+    seen, _ = play("outputs", OUTPUTS)
+    changes = [(out, analog) for out, analog, _ in seen["outputs"]]
+    expected = [([0, 0, 0], 0), ([0, 1, 0], 2.5), ([0, 0, 1], 2.5)]
+    require(changes == expected, seen)
+    places = [place[0] for _, _, place in seen["outputs"][1:]]
+    # 20 mm/s, and ui.py looks some milliseconds later.
+    require(all(0 <= place - due < 1 for place, due in zip(places, (4, 8))), f"at {places}")
+    require(seen["waited"][0] == seen["waited"][1] == [1, 0], seen["waited"])
+    return f"switched at X {places[0]:.2f} and {places[1]:.2f}; the first feed waited for the spindle"
+
+
 def owner_dies():
     seen, _ = play("owner_dies", LONG_WAY, during=lambda run: run.owner.kill())
     require(seen["disabled"], seen)
@@ -144,10 +171,13 @@ def refusals():
 
 
 SHORT = (path,)
-LONG = (stalls, probe, pause_and_abort, owner_dies, refusals)
+LONG = (stalls, probe, pause_and_abort, outputs, owner_dies, refusals)
 
 
 def main():
+    if os.geteuid() != 0:
+        print("needs root, for namespaces of its own")
+        return 77
     names = sys.argv[3:]
     tests = [test for test in SHORT + LONG if test.__name__ in names] if names else \
         SHORT + (LONG if os.environ.get("TRAMMEL_LONG") else ())

@@ -14,7 +14,10 @@ errors = linuxcnc.error_channel()
 result = {"errors": []}
 component = hal.component("planner-ui")
 component.newpin("touches", hal.HAL_BIT, hal.HAL_OUT)
+component.newpin("at-speed", hal.HAL_BIT, hal.HAL_OUT)
 component.ready()
+component["at-speed"] = True
+hal.connect("planner-ui.at-speed", "at-speed")
 
 
 def poll():
@@ -135,6 +138,27 @@ def pause_and_abort():
     result["aborted"] = list(stat.position[:3])
     mdi("G0 X1 Y2 Z3")
     result["after"] = list(stat.position[:3])
+
+
+def outputs():
+    """M62 to M67 in their places, and the first feed waits for the spindle."""
+    component["at-speed"] = False
+    start_program()
+    seen = []
+    at_rest_until_speed = None
+    while not idle():
+        poll()
+        now = [list(stat.dout[:3]), round(stat.aout[0], 3)]
+        if not seen or seen[-1][:2] != now:
+            seen.append([*now, list(stat.position[:2])])
+        if stat.spindle[0]["enabled"] and not component["at-speed"]:
+            if at_rest_until_speed is None:
+                at_rest_until_speed = [time.monotonic(), list(stat.position[:2])]
+            elif time.monotonic() - at_rest_until_speed[0] > 1:
+                result["waited"] = [at_rest_until_speed[1], list(stat.position[:2])]
+                component["at-speed"] = True
+        time.sleep(0.002)
+    result["outputs"] = seen
 
 
 def owner_dies():
