@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "steps.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/linuxcnc/path_server.hpp"
 #include "trammel/sim/timed_bus.hpp"
 
@@ -108,6 +109,7 @@ class PathBench {
       return given < operations.size() || (status.flags & TRAMMEL_STATUS_AT_REST) == 0 ||
              status.operations_done != region->operation_head;
     });
+    under_runs = card.parts().registers.read(card_map::reg::kUnderruns);
   }
 
   machine::Machine machine;
@@ -120,6 +122,7 @@ class PathBench {
   test::Steps steps;
   trammel_status status{};
   bool stalled = false;
+  std::uint32_t under_runs = 0;  // holds for want of commands, in the run before
 
  private:
   std::uint64_t beats_ = 0;

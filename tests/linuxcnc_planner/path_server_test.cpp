@@ -61,14 +61,14 @@ TEST(PathServer, MakesTheStepsOfTheRunner) {
 
 // Programs of random lines and arcs, of more operations than look-ahead sees.
 TEST(PathServer, RandomProgramsMakeTheStepsOfTheRunner) {
-  for (std::uint64_t seed = 1; seed <= 1; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     BothWays both;
     both.text = "G64\n";
     double x = 0;
     double y = 0;
-    for (int n = 0; n < 540; ++n) {
+    for (int n = 0; n < 90; ++n) {
       const double next_x = std::round(random.uniform(-0.3, 0.3) * 1000) / 1000;
       const double next_y = std::round(random.uniform(-0.3, 0.3) * 1000) / 1000;
       if (random.below(3) == 0) {
@@ -85,9 +85,12 @@ TEST(PathServer, RandomProgramsMakeTheStepsOfTheRunner) {
       x = next_x;
       y = next_y;
     }
-    PathBench bench;
+    machine::Machine machine = machine::default_machine();
+    machine.motion.window = 40;
+    PathBench bench(machine);
     bench.run(both.operations.all);
     EXPECT_EQ(bench.status.refusals, 0U) << bench.status.text;
+    EXPECT_EQ(bench.under_runs, 0U);
     EXPECT_TRUE(path_of(bench.steps) == runner_path(both.text + "M2\n", bench.machine));
   }
 }
@@ -122,12 +125,15 @@ TEST(PathServer, StallsOfTheRealtimeSideChangeNoPulse) {
 // In the middle of the hand-over, while the card has motion for longer than the stall lasts.
 TEST(PathServer, StallsWhileOperationsComeChangeNoPulse) {
   Operations many;
-  for (int n = 0; n < 900; ++n) many.feed({(n % 20) * 0.2, n * 0.01}, 100);
-  PathBench quiet;
+  for (int n = 0; n < 400; ++n) many.feed({(n % 20) * 0.2, n * 0.01}, 100);
+  machine::Machine machine = machine::default_machine();
+  machine.motion.window = 40;
+  PathBench quiet(machine);
   quiet.run(many.all);
-  PathBench stalled;
-  stalled.run(many.all, [&](unsigned period) { stalled.stalled = period >= 700 && period < 1000; });
+  PathBench stalled(machine);
+  stalled.run(many.all, [&](unsigned period) { stalled.stalled = period >= 300 && period < 600; });
   EXPECT_TRUE(pulse_times(stalled) == pulse_times(quiet));
+  EXPECT_EQ(quiet.under_runs + stalled.under_runs, 0U);
 }
 
 TEST(PathServer, PauseHoldsOnThePath) {

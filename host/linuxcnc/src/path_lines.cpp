@@ -18,7 +18,8 @@ constexpr std::chrono::nanoseconds kPeriod = 1ms;  // in which LinuxCNC hands ov
 constexpr double kBetweenOperations = 0.03;
 constexpr std::uint64_t kBetweenPeriods = 30;
 constexpr double kLongestStall = 1;
-// s of motion that the card has still when the run ends for want of operations: the rest is planned in that time.
+// s of motion that the card has still when the run ends for want of operations, beside what a stop takes, which the
+// card's under-run hold keeps: the rest is planned in that time.
 constexpr double kReserve = 0.1;
 
 }  // namespace
@@ -49,7 +50,9 @@ bool PathLines::wait_for_operation() {
 
 bool PathLines::may_wait() const {
   if (server_.ending_ || server_.queue_.barrier()) return false;
-  if (server_.progress_->any_sent()) return server_.progress_->seconds_left() > kReserve;
+  if (server_.progress_->any_sent()) {
+    return server_.progress_->seconds_left() > kReserve + machine::hold_seconds(server_.machine_);
+  }
   const double clocks = static_cast<double>(server_.now_.time - server_.last_came_);
   const double since = clocks / server_.card_.identification().clock_hz;
   const bool stalled = server_.beat_ != 0 && server_.beat_ - server_.last_beat_ < kBetweenPeriods;
