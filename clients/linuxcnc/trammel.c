@@ -100,9 +100,11 @@ static void count_errors(int fresh) {
   if (error && *pins->link_ok) ++*pins->packet_error_total;
 }
 
-/* Whether a status came that was not there in the last period. */
+/* Whether a status came that was not there in the last period. A thread that was late runs many periods at once: the
+   link is lost after so many periods and their time. */
 static int read_status(long period) {
   const struct trammel_status* status = status_of(&card);
+  const uint32_t most = card.pins->link_periods;
   int fresh = 0;
   if (link_has_owner(&card.link) && ring_read_status(&card.link.ring) == 0) fresh = status->beat != card.beat;
   if (fresh) {
@@ -112,8 +114,8 @@ static int read_status(long period) {
   } else if (card.silent < UINT32_MAX) {
     ++card.silent;
   }
-  *card.pins->link_ok =
-      status->beat != 0 && card.silent <= card.pins->link_periods && (status->flags & TRAMMEL_STATUS_LINK);
+  *card.pins->link_ok = status->beat != 0 && (status->flags & TRAMMEL_STATUS_LINK) &&
+                        (card.silent <= most || card.began - card.fresh_before <= (long long)most * period);
   return fresh;
 }
 
@@ -121,13 +123,13 @@ static void keep_most(hal_u32_t* most, long long value) {
   if (value > *most) *most = value > UINT32_MAX ? UINT32_MAX : (hal_u32_t)value;
 }
 
-/* What stalls the motion, if anything does: LinuxCNC's thread, or the owner. */
+/* While the machine is on: what stalls the motion, if anything does, LinuxCNC's thread or the owner. */
 static void measure(long long now, int fresh) {
-  if (card.read_before != 0) keep_most(card.pins->longest_period, now - card.read_before);
-  card.read_before = now;
-  if (card.mode == FOLLOWING && card.fresh_before != 0) {
+  if (card.mode == FOLLOWING) {
+    keep_most(card.pins->longest_period, now - card.read_before);
     keep_most(card.pins->longest_silence, now - card.fresh_before);
   }
+  card.read_before = now;
   if (fresh) card.fresh_before = now;
 }
 

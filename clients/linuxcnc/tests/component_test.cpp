@@ -249,6 +249,16 @@ TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
   EXPECT_TRUE(enabled());
 }
 
+TEST_F(Component, PeriodsThatComeAtOnceLoseNoLink) {
+  switch_on();
+  for (int n = 0; n < 200; ++n) {
+    stub::now += 20'000;
+    stub::call("trammel.read", kPeriod);
+    stub::call("trammel.write", kPeriod);
+  }
+  EXPECT_TRUE(stub::bit("trammel.link-ok"));
+}
+
 TEST_F(Component, AnotherOwnerIsASessionLost) {
   switch_on();
   status_.session = 8;
