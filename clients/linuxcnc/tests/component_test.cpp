@@ -226,7 +226,7 @@ TEST_F(Component, CommandThatIsNoNumberStopsItsJoint) {
 
 TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
   switch_on();
-  periods(50, false);
+  periods(100, false);
   EXPECT_TRUE(stub::bit("trammel.link-ok"));
   EXPECT_TRUE(stub::bit("trammel.packet-error"));
   periods(1, false);
