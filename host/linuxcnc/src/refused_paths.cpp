@@ -1,9 +1,9 @@
+#include "trammel/linuxcnc/refused_paths.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
-
-#include "trammel/linuxcnc/path_side.hpp"
 
 namespace trammel::linuxcnc {
 namespace {
@@ -41,13 +41,11 @@ class RefusedPaths final : public PathSide {
     } while (meanwhile());
   }
 
-  void report(trammel_status& status) const override {
+  void write_status(trammel_status& status) const override {
     status.operations_done = done_;
-    status.segments_begun = 0;
-    status.distance_to_go = 0;
-    status.path_speed = 0;
+    status.refusals = refusals_;
     status.refusal = refusal_;
-    if (refusal_ == 0) return;
+    if (refusals_ == 0) return;
     const std::size_t length = std::min(text_.size(), sizeof(status.text) - 1);
     std::fill(std::begin(status.text), std::end(status.text), '\0');
     std::copy_n(text_.begin(), length, std::begin(status.text));
@@ -60,11 +58,9 @@ class RefusedPaths final : public PathSide {
     for (; tail != head; ++tail) {
       const trammel_operation& operation = region_.operations[tail % TRAMMEL_OPERATIONS];
       ++done_;
-      if (!moves(operation.kind)) {
-        refusal_ = 0;
-        continue;
-      }
-      refusal_ = operation.id == 0 ? -1 : operation.id;
+      if (!moves(operation.kind)) continue;
+      ++refusals_;
+      refusal_ = operation.id;
       text_ = fmt::format("{} was refused: this program follows targets, and has no planner for paths",
                           name_of_operation(operation.kind));
     }
@@ -73,6 +69,7 @@ class RefusedPaths final : public PathSide {
 
   trammel_region& region_;
   std::uint64_t done_ = 0;
+  std::uint64_t refusals_ = 0;
   std::int32_t refusal_ = 0;
   std::string text_;
 };
