@@ -26,7 +26,7 @@ debian_packages_check=(clang-format universal-ctags iverilog yosys)
 # The documentation as a site.
 debian_packages_site=(doxygen graphviz)
 # LinuxCNC's interpreter, which tests compare the G-code reader with.
-debian_packages_linuxcnc=(linuxcnc-uspace)
+debian_packages_linuxcnc=(linuxcnc-uspace linuxcnc-uspace-dev)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)

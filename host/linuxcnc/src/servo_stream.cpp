@@ -96,9 +96,10 @@ void ServoStream::close() {
 }
 
 void ServoStream::abandon() {
+  const bool was_open = is_open();
   stream_.reset();
   card_.wait_until_stopped();
-  if (record_ != nullptr) record_->closed(card_.read_snapshot().time);
+  if (was_open && record_ != nullptr) record_->closed(card_.read_snapshot().time);
 }
 
 }  // namespace trammel::linuxcnc

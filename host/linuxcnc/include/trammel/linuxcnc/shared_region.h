@@ -113,7 +113,7 @@ struct trammel_status {
   uint32_t inputs;                  /* bit n: level of the card's input n behind polarity and filter */
   uint32_t homed, valid;            /* bit n: of joint n, as the card keeps them */
   uint32_t fault;                   /* FAULT, bits as in the register map */
-  uint32_t cause;                   /* first cause that stopped it: its number in the register map + 1; 0: none */
+  uint32_t cause;                   /* first cause that stopped it: its bit of FAULT + 1, TRAMMEL_CAUSE_...; 0: none */
   int64_t stop_position[TRAMMEL_JOINTS];    /* pulses, when the cause came */
   uint64_t last_period;                     /* number of the last period that was sent to the card */
   uint32_t ahead;                           /* periods queued in the card that it has not begun */
