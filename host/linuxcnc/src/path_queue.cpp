@@ -3,7 +3,9 @@
 namespace trammel::linuxcnc {
 namespace {
 
-std::uint64_t head_of(const trammel_region& region) { return __atomic_load_n(&region.operation_head, __ATOMIC_ACQUIRE); }
+std::uint64_t head_of(const trammel_region& region) {
+  return __atomic_load_n(&region.operation_head, __ATOMIC_ACQUIRE);
+}
 
 }  // namespace
 

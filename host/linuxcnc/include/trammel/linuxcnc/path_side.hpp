@@ -10,7 +10,8 @@ namespace trammel::linuxcnc {
 class PathSide {
  public:
   virtual ~PathSide() = default;
-  // Runs path operations until `meanwhile`, which is called about once a millisecond, gives false; the card stands then.
+  // Runs path operations until `meanwhile`, which is called about once a millisecond, gives false; the card stands
+  // then.
   virtual void serve(const std::function<bool()>& meanwhile) = 0;
   // The part of the status that tells of path operations.
   virtual void write_status(trammel_status& status) const = 0;
