@@ -18,6 +18,8 @@ enum {
 };
 /* Without a limit of acceleration, the card may be this far from the command when it begins to follow. */
 static const double start_distance = 2; /* pulses */
+/* The owner refuses a target that is faster than maxvel times this: what is clipped to maxvel is rounded. */
+#define SPEED_RESERVE 1.05
 
 enum mode {
   OFF,       /* no joint is enabled */

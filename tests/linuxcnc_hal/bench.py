@@ -54,11 +54,11 @@ class Bench:
                 if (self.folder / log).exists():
                     print(f"--- {log}\n" + (self.folder / log).read_text()[-3000:])
 
-    def configure(self, scenario, lead=40):
+    def configure(self, scenario, lead=30):
         """The example, with the tests' user interface. A shared machine without a realtime kernel is late by tens of
         milliseconds: more periods ahead, and room for the following error that this makes."""
         ini = (EXAMPLE / "trammel.ini").read_text()
-        for old, new in {"DISPLAY = axis": "DISPLAY = ./ui.py", "NAME = card": f"NAME = {self.name}",
+        for old, new in {"DISPLAY = axis": "DISPLAY = ./ui.py", "NAME = 0": f"NAME = {self.name}",
                          "LEAD_PERIODS = 4": f"LEAD_PERIODS = {lead}", "\nFERROR = 2": "\nFERROR = 20",
                          "MIN_FERROR = 1": "MIN_FERROR = 20"}.items():
             check(old in ini, f"trammel.ini has no {old!r}")
@@ -89,13 +89,13 @@ class Bench:
             self.as_user([self.trammel, "linuxcnc", "--name", self.name, "--machine", "machine.toml", *arguments]),
             cwd=self.folder, env=self.environment(), stdout=out, stderr=subprocess.STDOUT)
         self.owners.append(owner)
-        wait_until(lambda: "ready" in self.text("owner.log")[begun:] or owner.poll() is not None, 20, "the owner is ready")
+        wait_until(lambda: "LinuxCNC finds" in self.text("owner.log")[begun:] or owner.poll() is not None, 20, "the owner is ready")
         if owner.poll() is not None:
             raise RuntimeError("the owner ended: " + self.text("owner.log"))
         return owner
 
     def simulated(self, record="record"):
-        return ["--engine", "model", "--world", "world.toml", "--record", record]
+        return ["--engine", "model", "--clock", "1000000", "--world", "world.toml", "--record", record]
 
     def start(self, arguments):
         """halrun or linuxcnc, as the first process of its namespace: all of it ends with it."""

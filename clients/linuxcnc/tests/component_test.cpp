@@ -404,7 +404,7 @@ TEST_F(Component, SettingsGoToTheOwnerAndScaleShowsTheMachineFiles) {
   stub::u32("trammel.lead-periods") = 4;
   periods(1);
   EXPECT_EQ(region_->settings.pulses_per_unit[0], 100);
-  EXPECT_EQ(region_->settings.max_speed[1], 20 * kScale);
+  EXPECT_DOUBLE_EQ(region_->settings.max_speed[1], 1.05 * 20 * kScale);
   EXPECT_EQ(region_->settings.dir_hold[1], 700U);
   EXPECT_EQ(region_->settings.lead_periods, 4U);
   EXPECT_EQ(region_->settings_sequence % 2, 0U);
@@ -439,6 +439,15 @@ TEST_F(Component, TellsItsLongestPeriodAndTheOwnersLongestSilence) {
   periods(2);
   EXPECT_EQ(stub::u32("trammel.longest-period"), 5 * kPeriod);
   EXPECT_EQ(stub::u32("trammel.longest-silence"), 8 * kPeriod);
+}
+
+TEST_F(Component, UnloadedComponentSwitchesTheMachineOff) {
+  switch_on();
+  EXPECT_TRUE(enabled());
+  rtapi_app_exit();
+  loaded_ = false;
+  owner();
+  EXPECT_FALSE(enabled());
 }
 
 TEST_F(Component, HoldsItsLockFromLoadingToUnloading) {
