@@ -16,8 +16,7 @@ MODULE_DESCRIPTION("A Trammel stepper-motion card, by the process that owns it")
 MODULE_LICENSE("GPL");
 
 static char* name = NULL;
-RTAPI_MP_STRING(name,
-                "of the shared memory, as `trammel linuxcnc --name` has it; default: $TRAMMEL_LINUXCNC, else card");
+RTAPI_MP_STRING(name, "of the shared memory, as `trammel linuxcnc --name` has it; default: $TRAMMEL_LINUXCNC, else 0");
 static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, 1 to 8");
 
@@ -82,10 +81,13 @@ static void read_card(void) {
     *pins->input[n] = status->inputs >> n & 1;
     *pins->input_not[n] = !*pins->input[n];
   }
+  *pins->held = (status->flags & TRAMMEL_STATUS_HELD) != 0;
+  *pins->at_rest = (status->flags & TRAMMEL_STATUS_AT_REST) != 0;
   *pins->probe = (status->flags & TRAMMEL_STATUS_PROBE) != 0;
   *pins->stop_cause = status->cause;
   *pins->underrun = status->missing;
   *pins->late = status->late;
+  *pins->dropped = status->dropped;
   *pins->refused = status->refused;
   *pins->ahead = status->ahead;
   *pins->fault = !*pins->link_ok || card_failed(&card) || card.mode == LOST;
@@ -100,9 +102,11 @@ static void count_errors(int fresh) {
   if (error && *pins->link_ok) ++*pins->packet_error_total;
 }
 
-/* Whether a status came that was not there in the last period. */
+/* Whether a status came that was not there in the last period. A thread that was late runs many periods at once: the
+   link is lost after so many periods and their time. */
 static int read_status(long period) {
   const struct trammel_status* status = status_of(&card);
+  const uint32_t most = card.pins->link_periods;
   int fresh = 0;
   if (link_has_owner(&card.link) && ring_read_status(&card.link.ring) == 0) fresh = status->beat != card.beat;
   if (fresh) {
@@ -112,8 +116,8 @@ static int read_status(long period) {
   } else if (card.silent < UINT32_MAX) {
     ++card.silent;
   }
-  *card.pins->link_ok =
-      status->beat != 0 && card.silent <= card.pins->link_periods && (status->flags & TRAMMEL_STATUS_LINK);
+  *card.pins->link_ok = status->beat != 0 && (status->flags & TRAMMEL_STATUS_LINK) &&
+                        (card.silent <= most || card.began - card.fresh_before <= (long long)most * period);
   return fresh;
 }
 
@@ -121,13 +125,13 @@ static void keep_most(hal_u32_t* most, long long value) {
   if (value > *most) *most = value > UINT32_MAX ? UINT32_MAX : (hal_u32_t)value;
 }
 
-/* What stalls the motion, if anything does: LinuxCNC's thread, or the owner. */
+/* While the machine is on: what stalls the motion, if anything does, LinuxCNC's thread or the owner. */
 static void measure(long long now, int fresh) {
-  if (card.read_before != 0) keep_most(card.pins->longest_period, now - card.read_before);
-  card.read_before = now;
-  if (card.mode == FOLLOWING && card.fresh_before != 0) {
+  if (card.mode == FOLLOWING) {
+    keep_most(card.pins->longest_period, now - card.read_before);
     keep_most(card.pins->longest_silence, now - card.fresh_before);
   }
+  card.read_before = now;
   if (fresh) card.fresh_before = now;
 }
 
@@ -157,7 +161,7 @@ static void write_settings(void) {
     const struct joint_pins* pins = &card.pins->joint[n];
     const double own = pins->position_scale == card.joints[n].shown ? 0 : pins->position_scale;
     settings.pulses_per_unit[n] = own;
-    settings.max_speed[n] = pins->maxvel * fabs(own != 0 ? own : card.joints[n].scale);
+    settings.max_speed[n] = SPEED_RESERVE * pins->maxvel * fabs(own != 0 ? own : card.joints[n].scale);
     settings.step_length[n] = pins->step_len;
     settings.step_space[n] = pins->step_space;
     settings.dir_setup[n] = pins->dir_setup;
@@ -267,7 +271,7 @@ int rtapi_app_main(void) {
   const char* environment = getenv("TRAMMEL_LINUXCNC");
   int error;
   if (name == NULL || name[0] == '\0') {
-    name = (char*)(environment != NULL && environment[0] != '\0' ? environment : "card");
+    name = (char*)(environment != NULL && environment[0] != '\0' ? environment : "0");
   }
   if (joints < 1 || joints > TRAMMEL_JOINTS) {
     rtapi_print_msg(RTAPI_MSG_ERR, "trammel: joints=%d: 1 to %d\n", joints, TRAMMEL_JOINTS);
@@ -285,8 +289,13 @@ int rtapi_app_main(void) {
   return error;
 }
 
-/* LinuxCNC has stopped its threads before. */
+/* LinuxCNC has stopped its threads before. The last period switches the machine off. */
 void rtapi_app_exit(void) {
+  struct trammel_period* last = link_period(&card.link, rtapi_get_time());
   hal_exit(component);
+  if (last != NULL) {
+    link_publish(&card.link);
+    ring_wake(&card.link.ring);
+  }
   link_detach(&card.link);
 }

@@ -20,10 +20,10 @@ struct joint_pins {
 
 struct card_pins {
   hal_bit_t *hold, *clear, *coord_mode;
-  hal_bit_t *probe, *fault, *link_ok, *session_lost, *packet_error, *watchdog;
+  hal_bit_t *probe, *fault, *link_ok, *session_lost, *packet_error, *watchdog, *held, *at_rest;
   hal_bit_t *input[CARD_INPUTS], *input_not[CARD_INPUTS];
-  hal_u32_t *stop_cause, *underrun, *late, *refused, *ahead, *packet_error_total, *longest_read, *longest_write,
-      *longest_period, *longest_silence;
+  hal_u32_t *stop_cause, *underrun, *late, *dropped, *refused, *ahead, *packet_error_total, *longest_read,
+      *longest_write, *longest_period, *longest_silence;
   hal_s32_t* packet_error_level;
   hal_float_t* latency;
   hal_u32_t lead_periods, link_periods, test_drop_one_in; /* parameters from here on */
@@ -70,10 +70,13 @@ static int export_card(struct card_pins* c, int id) {
   bad |= hal_pin_bit_newf(HAL_OUT, &c->link_ok, id, "trammel.link-ok");
   bad |= hal_pin_bit_newf(HAL_OUT, &c->session_lost, id, "trammel.session-lost");
   bad |= hal_pin_bit_newf(HAL_OUT, &c->packet_error, id, "trammel.packet-error");
+  bad |= hal_pin_bit_newf(HAL_OUT, &c->held, id, "trammel.held");
+  bad |= hal_pin_bit_newf(HAL_OUT, &c->at_rest, id, "trammel.at-rest");
   bad |= hal_pin_bit_newf(HAL_IO, &c->watchdog, id, "trammel.watchdog.has_bit");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->stop_cause, id, "trammel.stop-cause");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->underrun, id, "trammel.underrun");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->late, id, "trammel.late");
+  bad |= hal_pin_u32_newf(HAL_OUT, &c->dropped, id, "trammel.dropped");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->refused, id, "trammel.refused");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->ahead, id, "trammel.ahead");
   bad |= hal_pin_u32_newf(HAL_OUT, &c->packet_error_total, id, "trammel.packet-error-total");

@@ -11,13 +11,15 @@
 #include "trammel_pins.h"
 
 enum {
-  LINK_PERIODS = 50,        /* without a new beat before link-ok falls; parameter link-periods */
+  LINK_PERIODS = 100,       /* without a new beat before link-ok falls; parameter link-periods */
   FAULT_WATCHDOG = 1 << 14, /* in trammel_status.fault, as in the register map */
   LEVEL_UP = 2,             /* packet-error-level, as hostmot2 counts it */
   LEVEL_MOST = 10
 };
 /* Without a limit of acceleration, the card may be this far from the command when it begins to follow. */
 static const double start_distance = 2; /* pulses */
+/* The owner refuses a target that is faster than maxvel times this: what is clipped to maxvel is rounded. */
+#define SPEED_RESERVE 1.05
 
 enum mode {
   OFF,       /* no joint is enabled */

@@ -226,7 +226,7 @@ TEST_F(Component, CommandThatIsNoNumberStopsItsJoint) {
 
 TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
   switch_on();
-  periods(50, false);
+  periods(100, false);
   EXPECT_TRUE(stub::bit("trammel.link-ok"));
   EXPECT_TRUE(stub::bit("trammel.packet-error"));
   periods(1, false);
@@ -247,6 +247,16 @@ TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
   enable(true);
   periods(3);
   EXPECT_TRUE(enabled());
+}
+
+TEST_F(Component, PeriodsThatComeAtOnceLoseNoLink) {
+  switch_on();
+  for (int n = 0; n < 200; ++n) {
+    stub::now += 20'000;
+    stub::call("trammel.read", kPeriod);
+    stub::call("trammel.write", kPeriod);
+  }
+  EXPECT_TRUE(stub::bit("trammel.link-ok"));
 }
 
 TEST_F(Component, AnotherOwnerIsASessionLost) {
@@ -394,7 +404,7 @@ TEST_F(Component, SettingsGoToTheOwnerAndScaleShowsTheMachineFiles) {
   stub::u32("trammel.lead-periods") = 4;
   periods(1);
   EXPECT_EQ(region_->settings.pulses_per_unit[0], 100);
-  EXPECT_EQ(region_->settings.max_speed[1], 20 * kScale);
+  EXPECT_DOUBLE_EQ(region_->settings.max_speed[1], 1.05 * 20 * kScale);
   EXPECT_EQ(region_->settings.dir_hold[1], 700U);
   EXPECT_EQ(region_->settings.lead_periods, 4U);
   EXPECT_EQ(region_->settings_sequence % 2, 0U);
@@ -429,6 +439,15 @@ TEST_F(Component, TellsItsLongestPeriodAndTheOwnersLongestSilence) {
   periods(2);
   EXPECT_EQ(stub::u32("trammel.longest-period"), 5 * kPeriod);
   EXPECT_EQ(stub::u32("trammel.longest-silence"), 8 * kPeriod);
+}
+
+TEST_F(Component, UnloadedComponentSwitchesTheMachineOff) {
+  switch_on();
+  EXPECT_TRUE(enabled());
+  rtapi_app_exit();
+  loaded_ = false;
+  owner();
+  EXPECT_FALSE(enabled());
 }
 
 TEST_F(Component, HoldsItsLockFromLoadingToUnloading) {

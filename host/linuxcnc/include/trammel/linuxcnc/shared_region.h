@@ -35,7 +35,7 @@
 #define TRAMMEL_REGION_FOLDER "/dev/shm"
 #define TRAMMEL_REGION_PREFIX "trammel-linuxcnc."
 /* Raised with every change of this layout. Each side writes it when it attaches, and leaves another version alone. */
-#define TRAMMEL_REGION_VERSION 2u
+#define TRAMMEL_REGION_VERSION 3u
 
 enum { TRAMMEL_LOCK_OWNER = 0, TRAMMEL_LOCK_HAL = 1, TRAMMEL_LOCK_PLANNER = 2 };
 
@@ -88,6 +88,12 @@ enum {
   TRAMMEL_STOPPED = 3
 }; /* struct trammel_status.state */
 
+/* Causes behind those of the register map, for struct trammel_status.cause. */
+enum {
+  TRAMMEL_CAUSE_TARGET = 64, /* a target that the driver refused; see text */
+  TRAMMEL_CAUSE_OTHER = 65   /* the card was reset or used by somebody else; see text */
+};
+
 enum {
   TRAMMEL_STATUS_LINK = 1u << 0,   /* the card answers */
   TRAMMEL_STATUS_FAULT = 1u << 1,  /* something stopped it that was not cleared yet: cause, stop_position */
@@ -107,11 +113,12 @@ struct trammel_status {
   uint32_t inputs;                  /* bit n: level of the card's input n behind polarity and filter */
   uint32_t homed, valid;            /* bit n: of joint n, as the card keeps them */
   uint32_t fault;                   /* FAULT, bits as in the register map */
-  uint32_t cause;                   /* first cause that stopped it: its number in the register map + 1; 0: none */
+  uint32_t cause;                   /* first cause that stopped it: its bit of FAULT + 1, TRAMMEL_CAUSE_...; 0: none */
   int64_t stop_position[TRAMMEL_JOINTS];    /* pulses, when the cause came */
   uint64_t last_period;                     /* number of the last period that was sent to the card */
   uint32_t ahead;                           /* periods queued in the card that it has not begun */
   uint32_t late;                            /* periods that came after the card had to go on along its line */
+  uint32_t dropped;                         /* periods that never came: gaps of trammel_period.number */
   uint32_t missing;                         /* streams that ended in a ramp for want of a period: under-runs */
   uint32_t refused;                         /* periods that the driver refused (too fast, beyond a soft limit) */
   uint64_t captures;                        /* edges of the probe, counted */
