@@ -101,9 +101,10 @@ Operations long_way() {
   return operations;
 }
 
+// From the first one on.
 std::vector<std::uint64_t> pulse_times(const PathBench& bench) {
   std::vector<std::uint64_t> times;
-  for (const driver::PinStep& step : bench.steps.pins) times.push_back(step.cycle);
+  for (const driver::PinStep& step : bench.steps.pins) times.push_back(step.cycle - bench.steps.pins.front().cycle);
   return times;
 }
 
@@ -128,8 +129,12 @@ TEST(PathServer, StallsWhileOperationsComeChangeNoPulse) {
   for (int n = 0; n < 400; ++n) many.feed({(n % 20) * 0.2, n * 0.01}, 100);
   machine::Machine machine = machine::default_machine();
   machine.motion.window = 40;
+  PathBench at_once(machine);
+  for (const trammel_operation& operation : many.all) at_once.post(operation);
+  at_once.run({});
   PathBench quiet(machine);
   quiet.run(many.all);
+  EXPECT_TRUE(pulse_times(quiet) == pulse_times(at_once)) << "handed over one by one";
   PathBench stalled(machine);
   stalled.run(many.all, [&](unsigned period) { stalled.stalled = period >= 300 && period < 600; });
   EXPECT_TRUE(pulse_times(stalled) == pulse_times(quiet));
