@@ -47,17 +47,44 @@ TOOL_TABLE = tools.tbl
 KINEMATICS = trivkins
 JOINTS = 3
 """
-# The feedback is the command, as the HAL component makes it in coordinated mode.
-HAL = """loadrt [KINS]KINEMATICS
+HAL_BEGIN = """loadrt [KINS]KINEMATICS
 loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS num_dio=8
-addf motion-command-handler servo-thread
+"""
+# The feedback is the command, as the HAL component makes it in coordinated mode.
+HAL_ECHO = """addf motion-command-handler servo-thread
 addf motion-controller servo-thread
 net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
 net y joint.1.motor-pos-cmd => joint.1.motor-pos-fb
 net z joint.2.motor-pos-cmd => joint.2.motor-pos-fb
-net at-speed => spindle.0.at-speed
-net link trammel-planner.link-ok => motion.enable
 net user-enable iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
+net probe => motion.probe-input
+"""
+# Behind `trammel linuxcnc`.
+HAL_COMPONENT = """loadrt trammel joints=[KINS]JOINTS
+loadrt not names=card-well
+loadrt and2 names=may-run
+addf trammel.read servo-thread
+addf card-well servo-thread
+addf may-run servo-thread
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+addf trammel.write servo-thread
+setp trammel.planner-module 1
+setp trammel.lead-periods 50
+setp trammel.link-periods 2000
+net coord-mode motion.coord-mode => trammel.coord-mode
+net card-fault trammel.fault => card-well.in
+net card-well card-well.out => may-run.in0
+net user-enable iocontrol.0.user-enable-out => may-run.in1
+net may-run may-run.out => iocontrol.0.emc-enable-in
+net clear iocontrol.0.user-request-enable => trammel.clear
+net probe trammel.probe => motion.probe-input
+""" + "".join(f"""net cmd{n} joint.{n}.motor-pos-cmd => trammel.joint.0{n}.position-cmd
+net fb{n} trammel.joint.0{n}.position-fb => joint.{n}.motor-pos-fb
+net enable{n} joint.{n}.amp-enable-out => trammel.joint.0{n}.enable
+""" for n in range(3))
+HAL_END = """net at-speed => spindle.0.at-speed
+net link trammel-planner.link-ok => motion.enable
 net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
 net change iocontrol.0.tool-change => iocontrol.0.tool-changed
 """
@@ -75,18 +102,23 @@ def ini():
 class Headless:
     """One run of LinuxCNC; `scenario` is a function of ui.py, which writes what it saw to result.json."""
 
-    def __init__(self, owner, module, scenario, program="", surface=None):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-planner-"))
-        self.name = os.environ.get("TPM_NAME", f"test{os.getpid()}")
-        self.owner_program = owner
-        self.surface = surface
-        for file, text in {"test.ini": ini(), "machine.hal": HAL, "program.ngc": program, "tools.tbl": "",
+    def __init__(self, owner, module, scenario, program="", surface=None, trammel=None):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-planner-", dir="/var/tmp"))
+        self.name = f"test{os.getpid()}"
+        self.owner_command = [owner, self.name, "owner.log", *([str(surface)] if surface is not None else [])]
+        hal = HAL_BEGIN + HAL_ECHO + HAL_END
+        if trammel is not None:
+            self.owner_command = [trammel, "linuxcnc", "--name", self.name, "--engine", "model", "--clock",
+                                  "1000000", "--record", "owner.log"]
+            hal = HAL_BEGIN + HAL_COMPONENT + HAL_END
+        for file, text in {"test.ini": ini(), "machine.hal": hal, "program.ngc": program, "tools.tbl": "",
                            "scenario": scenario}.items():
             (self.folder / file).write_text(text)
         shutil.copy(HERE / "ui.py", self.folder)
         modules = self.folder / "modules"
         shutil.copytree(MODULES, modules)
-        shutil.copy(module, modules)
+        for built in pathlib.Path(module).parent.glob("*.so"):
+            shutil.copy(built, modules)
         self.user = "nobody" if os.geteuid() == 0 else None
         if self.user:
             subprocess.run(["chown", "-R", self.user, self.folder], check=True)
@@ -98,11 +130,10 @@ class Headless:
 
     def start(self):
         environment = {**os.environ, "HOME": str(self.folder), "TRAMMEL_LINUXCNC": self.name, "DISPLAY": ""}
-        surface = [str(self.surface)] if self.surface is not None else []
-        self.owner = subprocess.Popen(self.command([self.owner_program, self.name, "owner.log", *surface]),
-                                      cwd=self.folder, env=environment)
-        arguments = ["unshare", "--mount", "--ipc", "--net", "--", "sh", "-c",
-                     f"mount --bind {self.folder}/modules {MODULES} && exec \"$@\"", "sh",
+        self.owner = subprocess.Popen(self.command(self.owner_command), cwd=self.folder, env=environment,
+                                      stdout=subprocess.DEVNULL)
+        arguments = ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "--", "sh", "-c",
+                     f"mount -t tmpfs tmpfs /tmp && mount --bind {self.folder}/modules {MODULES} && exec \"$@\"", "sh",
                      *self.command(["linuxcnc", "-r", "test.ini"])]
         self.output = open(self.folder / "linuxcnc.out", "w")
         self.linuxcnc = subprocess.Popen(arguments, cwd=self.folder, env=environment, stdout=self.output,
@@ -148,7 +179,7 @@ class Headless:
         if not result.exists():
             raise RuntimeError(f"no result; {self.folder}/linuxcnc.out:\n" + self.text())
         log = self.folder / "owner.log"
-        lines = [line.split() for line in log.read_text().splitlines()] if log.exists() else []
+        lines = [line.replace(",", " ").split() for line in log.read_text().splitlines()] if log.exists() else []
         seen = json.loads(result.read_text())
         shutil.rmtree(self.folder)
         return seen, lines

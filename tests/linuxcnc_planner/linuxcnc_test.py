@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The planner module in headless LinuxCNC, against the runner and the card: `linuxcnc_test.py OWNER MODULE [NAME...]`.
+"""The planner module in headless LinuxCNC, against the runner and the card: `linuxcnc_test.py OWNER MODULE TRAMMEL [NAME...]`.
 
 Tests without a name in SHORT run where TRAMMEL_LONG is set, or by their name. Root, or a user that may make namespaces.
 """
@@ -15,7 +15,7 @@ import time
 sys.dont_write_bytecode = True
 from headless import Headless  # noqa: E402
 
-OWNER, MODULE = (str(pathlib.Path(name).resolve()) for name in sys.argv[1:3])
+OWNER, MODULE, TRAMMEL = (str(pathlib.Path(name).resolve()) for name in sys.argv[1:4])
 PULSES = 80  # a mm
 
 EVERY_KIND = """G21 G90 G17 G64
@@ -43,8 +43,8 @@ def require(condition, text):
         raise AssertionError(text)
 
 
-def play(scenario, program="", surface=None, during=None):
-    run = Headless(OWNER, MODULE, scenario, program, surface).start()
+def play(scenario, program="", surface=None, during=None, trammel=None):
+    run = Headless(OWNER, MODULE, scenario, program, surface, trammel).start()
     try:
         if during:
             run.wait_for("moving")
@@ -81,6 +81,23 @@ def path():
     require(of(log, "path") == expected, "another path than the runner's")
     require(seen["errors"] == [] and seen["position"] == [0, 0, 0], seen)
     return f"{len(expected)} steps; longest call {seen['longest_call']} ns, period {seen['longest_cycle']} ns"
+
+
+def whole():
+    """The same with the HAL component and `trammel linuxcnc`, against `trammel run`."""
+    seen, log = play("program", EVERY_KIND, trammel=TRAMMEL)
+    made = [(float(words[3]), float(words[4])) for words in log if words[0] == "step"]
+    with tempfile.TemporaryDirectory() as folder:
+        program, steps = pathlib.Path(folder) / "program.ngc", pathlib.Path(folder) / "steps"
+        program.write_text(EVERY_KIND)
+        subprocess.run([TRAMMEL, "run", program, "--engine", "model", "--clock", "1000000", "--path-steps", steps],
+                       check=True, stdout=subprocess.DEVNULL)
+        rows = [row.split(",") for row in steps.read_text().splitlines()]
+    axis, direction = (rows[0].index(name) for name in ("axis", "direction"))
+    expected = [(float(row[axis]), float(row[direction])) for row in rows[1:]]
+    require(len(expected) > 5000 and made == expected, f"another path: {len(made)} steps for {len(expected)}, {seen}")
+    require(seen["errors"] == [] and seen["position"] == [0, 0, 0], seen)
+    return f"{len(expected)} steps; longest call {seen['longest_call']} ns"
 
 
 def stalls():
@@ -171,14 +188,14 @@ def refusals():
 
 
 SHORT = (path,)
-LONG = (stalls, probe, pause_and_abort, outputs, owner_dies, refusals)
+LONG = (whole, stalls, probe, pause_and_abort, outputs, owner_dies, refusals)
 
 
 def main():
     if os.geteuid() != 0:
         print("needs root, for namespaces of its own")
         return 77
-    names = sys.argv[3:]
+    names = sys.argv[4:]
     tests = [test for test in SHORT + LONG if test.__name__ in names] if names else \
         SHORT + (LONG if os.environ.get("TRAMMEL_LONG") else ())
     failed = 0

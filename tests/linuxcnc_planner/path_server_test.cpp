@@ -141,6 +141,19 @@ TEST(PathServer, StallsWhileOperationsComeChangeNoPulse) {
   EXPECT_EQ(quiet.under_runs + stalled.under_runs, 0U);
 }
 
+// One piece of feed spans many of these lines, and comes with a later one: what the card has of the path lasts for
+// seconds, and yet it cannot go on.
+TEST(PathServer, SlowLinesBehindOneAnotherComeToTheirEnd) {
+  machine::Machine machine = machine::default_machine();
+  machine.motion.window = 20;
+  Operations many;
+  for (int n = 1; n <= 50; ++n) many.feed({n * 0.1}, 2);
+  PathBench bench(machine);
+  bench.run(many.all);
+  EXPECT_EQ(bench.steps.position(0), 5 * kPathPulses);
+  EXPECT_EQ(bench.under_runs, 0U);
+}
+
 TEST(PathServer, PauseHoldsOnThePath) {
   PathBench whole;
   whole.run(long_way().all);

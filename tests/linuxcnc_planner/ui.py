@@ -93,9 +93,7 @@ def stalled():
 
 
 def probe():
-    hal.new_sig("probe", hal.HAL_BIT)
     hal.connect("planner-ui.touches", "probe")
-    hal.connect("motion.probe-input", "probe")
     mode(linuxcnc.MODE_MDI)
     command.mdi("G38.2 Z-10 F120")
     until(lambda: stat.position[2] <= -3, 20, "on the way")
