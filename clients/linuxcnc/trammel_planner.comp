@@ -202,16 +202,6 @@ int tpAbort(TP_STRUCT* tp) {
   return TP_ERR_OK;
 }
 
-int tpPause(TP_STRUCT* tp) {
-  tp->pausing = 1;
-  return TP_ERR_OK;
-}
-
-int tpResume(TP_STRUCT* tp) {
-  tp->pausing = 0;
-  return TP_ERR_OK;
-}
-
 /* motmod asks in each period for as long as the adaptive feed is negative: told once. */
 int tpSetRunDir(TP_STRUCT* const tp, tc_direction_t direction) {
   (void)tp;
@@ -227,30 +217,6 @@ int tpSetRunDir(TP_STRUCT* const tp, tc_direction_t direction) {
 int tpSetSpindleSync(TP_STRUCT* const tp, int spindle, double sync, int mode) {
   (void)spindle, (void)mode;
   tp->synchronized = sync != 0;
-  return TP_ERR_OK;
-}
-
-int tpSetDout(TP_STRUCT* const tp, int index, unsigned char start, unsigned char end) {
-  (void)end;
-  if (index < 0 || index >= EMCMOT_MAX_DIO) return TP_ERR_FAIL;
-  tp->syncdio.anychanged = 1;
-  tp->syncdio.dio_mask |= (iomask_t)1 << index;
-  tp->syncdio.dios[index] = start > 0 ? 1 : -1;
-  return TP_ERR_OK;
-}
-
-int tpSetAout(TP_STRUCT* const tp, unsigned char index, double start, double end) {
-  (void)end;
-  if (index >= EMCMOT_MAX_AIO) return TP_ERR_FAIL;
-  tp->syncdio.anychanged = 1;
-  tp->syncdio.aio_mask |= (iomask_t)1 << index;
-  tp->syncdio.aios[index] = start;
-  return TP_ERR_OK;
-}
-
-int tpSetTermCond(TP_STRUCT* tp, int condition, double tolerance) {
-  tp->termCond = condition;
-  tp->tolerance = tolerance;
   return TP_ERR_OK;
 }
 

@@ -9,9 +9,9 @@
 #include "trammel_planner_ring.h"
 
 enum {
-  KEPT = 4096,         /* segments; more than the ring and the owner's queue hold */
-  MOST_QUEUED = 1500,  /* segments that have not begun, before LinuxCNC is told to wait */
-  RING_RESERVE = 64,   /* slots for operations that are no segments */
+  KEPT = 4096,          /* segments; more than the ring and the owner's queue hold */
+  MOST_QUEUED = 1500,   /* segments that have not begun, before LinuxCNC is told to wait */
+  RING_RESERVE = 64,    /* slots for operations that are no segments */
   SILENT_PERIODS = 2000 /* of the owner: it is gone or stopped */
 };
 enum { WAIT_NOT = 0, WAIT_AT_SPEED = 1, WAIT_PROBE = 2 };

@@ -44,6 +44,40 @@ int tpSetId(TP_STRUCT* tp, int id) {
   return TP_ERR_OK;
 }
 
+int tpPause(TP_STRUCT* tp) {
+  tp->pausing = 1;
+  return TP_ERR_OK;
+}
+
+int tpResume(TP_STRUCT* tp) {
+  tp->pausing = 0;
+  return TP_ERR_OK;
+}
+
+int tpSetDout(TP_STRUCT* const tp, int index, unsigned char start, unsigned char end) {
+  (void)end;
+  if (index < 0 || index >= EMCMOT_MAX_DIO) return TP_ERR_FAIL;
+  tp->syncdio.anychanged = 1;
+  tp->syncdio.dio_mask |= (iomask_t)1 << index;
+  tp->syncdio.dios[index] = start > 0 ? 1 : -1;
+  return TP_ERR_OK;
+}
+
+int tpSetAout(TP_STRUCT* const tp, unsigned char index, double start, double end) {
+  (void)end;
+  if (index >= EMCMOT_MAX_AIO) return TP_ERR_FAIL;
+  tp->syncdio.anychanged = 1;
+  tp->syncdio.aio_mask |= (iomask_t)1 << index;
+  tp->syncdio.aios[index] = start;
+  return TP_ERR_OK;
+}
+
+int tpSetTermCond(TP_STRUCT* tp, int condition, double tolerance) {
+  tp->termCond = condition;
+  tp->tolerance = tolerance;
+  return TP_ERR_OK;
+}
+
 int tpGetPos(TP_STRUCT const* const tp, EmcPose* const pose) {
   *pose = tp->currentPos;
   return TP_ERR_OK;

@@ -19,6 +19,7 @@
 namespace trammel::linuxcnc {
 
 inline constexpr std::uint32_t kPathClock = 200'000;
+inline constexpr double kPathPulses = 80;  // a mm
 
 // What LinuxCNC hands to its planner, as operations.
 class Operations {
@@ -127,6 +128,12 @@ class PathBench {
  private:
   std::uint64_t beats_ = 0;
 };
+
+inline Operations long_way() {
+  Operations operations;
+  for (int n = 0; n < 16; ++n) operations.feed({n % 2 == 0 ? 8.0 : 0.0, (n + 1) * 0.5}, 40);
+  return operations;
+}
 
 inline std::vector<std::pair<unsigned, int>> path_of(const test::Steps& steps) {
   std::vector<std::pair<unsigned, int>> path;

@@ -1,4 +1,4 @@
-// The path server against the runner on the same programs; stalls, pauses, aborts, overrides, probes, refusals.
+// The path server against the runner on the same programs; pauses, aborts, overrides, refusals, coordinates.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,6 @@ namespace trammel::linuxcnc {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kPathPulses = 80;  // a mm
 
 // Lines, arcs in three planes, a helix, whole circles, each kind of path control, as text and as LinuxCNC has it.
 struct BothWays {
@@ -95,65 +93,6 @@ TEST(PathServer, RandomProgramsMakeTheStepsOfTheRunner) {
   }
 }
 
-Operations long_way() {
-  Operations operations;
-  for (int n = 0; n < 16; ++n) operations.feed({n % 2 == 0 ? 8.0 : 0.0, (n + 1) * 0.5}, 40);
-  return operations;
-}
-
-// From the first one on.
-std::vector<std::uint64_t> pulse_times(const PathBench& bench) {
-  std::vector<std::uint64_t> times;
-  for (const driver::PinStep& step : bench.steps.pins) times.push_back(step.cycle - bench.steps.pins.front().cycle);
-  return times;
-}
-
-// The realtime process is stopped three times for 300 ms: no operation and no beat comes then.
-TEST(PathServer, StallsOfTheRealtimeSideChangeNoPulse) {
-  PathBench quiet;
-  quiet.run(long_way().all);
-  PathBench stalled;
-  stalled.run(long_way().all, [&](unsigned period) {
-    stalled.stalled =
-        (period >= 10 && period < 310) || (period >= 1000 && period < 1300) || (period >= 2000 && period < 2300);
-  });
-  PathBench later;
-  later.run(long_way().all, [&](unsigned period) { later.stalled = period >= 1000 && period < 1900; });
-  EXPECT_TRUE(pulse_times(later) == pulse_times(quiet));
-  EXPECT_TRUE(path_of(stalled.steps) == path_of(quiet.steps)) << "an early one may part the motion, never the path";
-}
-
-// In the middle of the hand-over, while the card has motion for longer than the stall lasts.
-TEST(PathServer, StallsWhileOperationsComeChangeNoPulse) {
-  Operations many;
-  for (int n = 0; n < 400; ++n) many.feed({(n % 20) * 0.2, n * 0.01}, 100);
-  machine::Machine machine = machine::default_machine();
-  machine.motion.window = 40;
-  PathBench at_once(machine);
-  for (const trammel_operation& operation : many.all) at_once.post(operation);
-  at_once.run({});
-  PathBench quiet(machine);
-  quiet.run(many.all);
-  EXPECT_TRUE(pulse_times(quiet) == pulse_times(at_once)) << "handed over one by one";
-  PathBench stalled(machine);
-  stalled.run(many.all, [&](unsigned period) { stalled.stalled = period >= 300 && period < 600; });
-  EXPECT_TRUE(pulse_times(stalled) == pulse_times(quiet));
-  EXPECT_EQ(quiet.under_runs + stalled.under_runs, 0U);
-}
-
-// One piece of feed spans many of these lines, and comes with a later one: what the card has of the path lasts for
-// seconds, and yet it cannot go on.
-TEST(PathServer, SlowLinesBehindOneAnotherComeToTheirEnd) {
-  machine::Machine machine = machine::default_machine();
-  machine.motion.window = 20;
-  Operations many;
-  for (int n = 1; n <= 50; ++n) many.feed({n * 0.1}, 2);
-  PathBench bench(machine);
-  bench.run(many.all);
-  EXPECT_EQ(bench.steps.position(0), 5 * kPathPulses);
-  EXPECT_EQ(bench.under_runs, 0U);
-}
-
 TEST(PathServer, PauseHoldsOnThePath) {
   PathBench whole;
   whole.run(long_way().all);
@@ -224,56 +163,6 @@ TEST(PathServer, AFeedOfZeroHolds) {
     }
   });
   EXPECT_EQ(bench.steps.position(1), 8 * kPathPulses);
-}
-
-class PathProbe : public testing::Test {
- protected:
-  static machine::Machine probing() {
-    machine::Machine machine = machine::default_machine();
-    machine.probe.input = 2;
-    return machine;
-  }
-  void touch_at(double seconds) {
-    bench.bus.at(static_cast<std::uint64_t>(seconds * kPathClock),
-                 [](sim::Engine& engine) { engine.set_inputs(0b100); });
-  }
-  PathBench bench{probing()};
-};
-
-TEST_F(PathProbe, TellsTheCardsCapture) {
-  touch_at(2);
-  bench.run(Operations().rapid({3}).probe({3, 0, -10}, 2).all);
-  EXPECT_EQ(bench.status.probes, 1U);
-  EXPECT_EQ(bench.status.probe_tripped, 1U);
-  EXPECT_EQ(bench.status.probe_pose[2] * kPathPulses, bench.steps.position(2, 2 * kPathClock + 8));
-  EXPECT_LT(bench.steps.position(2), bench.steps.position(2, 2 * kPathClock + 8)) << "the ramp behind the edge";
-  EXPECT_EQ(bench.status.pose[2] * kPathPulses, bench.steps.position(2));
-}
-
-// LinuxCNC sees the probe's pin and aborts the motion.
-TEST_F(PathProbe, AnAbortBehindTheEdgeKeepsTheCapture) {
-  touch_at(2);
-  bool aborted = false;
-  bench.run(Operations().probe({0, 0, -10}, 2).all, [&](unsigned) {
-    if (aborted || bench.engine->cycles() < 2 * kPathClock + 100) return;
-    aborted = true;
-    bench.post(TRAMMEL_ABORT);
-  });
-  EXPECT_TRUE(aborted);
-  EXPECT_EQ(bench.status.probes, 1U);
-  EXPECT_EQ(bench.status.probe_pose[2] * kPathPulses, bench.steps.position(2, 2 * kPathClock + 8));
-}
-
-TEST_F(PathProbe, MissesAndIsAborted) {
-  bench.run(Operations().probe({0, 0, -2}, 10).all);
-  EXPECT_EQ(bench.status.probes, 1U);
-  EXPECT_EQ(bench.status.probe_tripped, 0U);
-  EXPECT_EQ(bench.status.probe_pose[2], -2);
-  bench.run(Operations().probe({0, 0, -20}, 2).all, [&](unsigned period) {
-    if (period == 1000) bench.post(TRAMMEL_ABORT);
-  });
-  EXPECT_EQ(bench.status.probes, 1U) << "aborted before the edge: no result";
-  EXPECT_GT(bench.status.pose[2], -20);
 }
 
 TEST(PathServer, RefusesByNameAndGoesOnAfterAnAbort) {

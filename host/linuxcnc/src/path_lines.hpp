@@ -22,6 +22,7 @@ class PathLines final : public gcode::LineSource {
  private:
   bool wait_for_operation();
   bool may_wait() const;
+  bool still_come() const;
   void take(const trammel_operation& operation);
 
   PathServer& server_;

@@ -26,6 +26,7 @@ class PathQueue {
   // The next segment, none before one has come; until the next call of pop() or drop().
   const trammel_operation* front() const { return segments_.empty() ? nullptr : &segments_.front(); }
   void pop() { segments_.pop_front(); }
+  std::size_t size() const { return segments_.size(); }
   // The operation that needs the card at rest, behind all segments of the queue.
   const std::optional<trammel_operation>& barrier() const { return barrier_; }
   // Abort and clear end the motion at once; set pose waits for its end.
