@@ -164,7 +164,7 @@ void PathServer::measure_speed(const driver::Snapshot& now) {
 void PathServer::stop_if_asked(const driver::Snapshot& now) {
   probe_met_ = probe_met_ || (probing_ && now.status.probed);
   if (!progress_ || stop_asked_) return;
-  if ((!queue_.wants_stop() || probe_met_)) return;
+  if (!ending_ && (!queue_.wants_stop() || probe_met_)) return;
   stop_asked_ = true;
   card_.request_stop();
 }
