@@ -15,8 +15,6 @@
 #include "trammel/transport/byte_stream.hpp"
 
 namespace trammel::app {
-namespace {
-
 sim::SimulationOptions local_engine(const LocalCardChoice& choice, unsigned axes) {
   sim::SimulationOptions options;
   options.kind = choice.engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
@@ -25,8 +23,6 @@ sim::SimulationOptions local_engine(const LocalCardChoice& choice, unsigned axes
   options.rtl_thread = true;
   return options;
 }
-
-}  // namespace
 
 void LocalCardChoice::add_to(CLI::App& command) {
   command

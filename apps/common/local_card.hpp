@@ -7,6 +7,7 @@
 
 #include "command_line.hpp"
 #include "trammel/driver/steps.hpp"
+#include "trammel/sim/engines.hpp"
 #include "trammel/transport/card_url.hpp"
 #include "world_choice.hpp"
 
@@ -21,6 +22,9 @@ struct LocalCardChoice {
   // --engine, --clock, --fast, --world and --world-events.
   void add_to(CLI::App& command);
 };
+
+// Of its engine.
+sim::SimulationOptions local_engine(const LocalCardChoice& choice, unsigned axes);
 
 class LocalCard {
  public:

@@ -17,6 +17,7 @@
 #include "common/standard_streams.hpp"
 #include "common/terminal.hpp"
 #include "motion_record.hpp"
+#include "paced_card.hpp"
 #include "trammel/linuxcnc/bridge.hpp"
 #include "trammel/linuxcnc/path_server.hpp"
 #include "trammel/linuxcnc/refused_paths.hpp"
@@ -61,23 +62,29 @@ void tell_counts(const trammel_status& status) {
                            status.late, status.dropped, status.refused));
 }
 
+void serve_linuxcnc(const LinuxcncOptions& options, linuxcnc::Region& region, driver::Bus& link,
+                    const machine::Machine& machine, MotionRecord* record) {
+  linuxcnc::PathBus bus(link);
+  driver::Card card = driver::Card::open(bus);
+  require_axes(card, machine);
+  const auto path = path_side(options, region, card, bus, machine);
+  linuxcnc::BridgeOptions bridge_options;
+  bridge_options.note = [](const std::string& text) { tell("note", text); };
+  bridge_options.record = record;
+  linuxcnc::Bridge bridge(region, card, bus, machine, *path, bridge_options);
+  end_linuxcnc_at_signals();
+  to_standard_output(fmt::format("LinuxCNC finds the card as \"{}\" ({})\n", options.name, region.path()));
+  finish_standard_streams();
+  bridge.run([] { return g_linuxcnc_ended != 0; });
+  tell_counts(bridge.status());
+}
+
 void own_card(const LinuxcncOptions& options, linuxcnc::Region& region, const transport::CardUrl& url,
               const machine::Machine& machine, MotionRecord* record) {
   with_card(url, Purpose::kMove, [&](driver::Card& first, transport::Connection& connection) {
     require_axes(first, machine);
     if (options.card.text) take_over(first, options.card, machine);
-    linuxcnc::PathBus bus(connection.bus());
-    driver::Card card = driver::Card::open(bus);
-    const auto path = path_side(options, region, card, bus, machine);
-    linuxcnc::BridgeOptions bridge_options;
-    bridge_options.note = [](const std::string& text) { tell("note", text); };
-    bridge_options.record = record;
-    linuxcnc::Bridge bridge(region, card, bus, machine, *path, bridge_options);
-    end_linuxcnc_at_signals();
-    to_standard_output(fmt::format("LinuxCNC finds the card as \"{}\" ({})\n", options.name, region.path()));
-    finish_standard_streams();
-    bridge.run([] { return g_linuxcnc_ended != 0; });
-    tell_counts(bridge.status());
+    serve_linuxcnc(options, region, connection.bus(), machine, record);
   });
 }
 
@@ -96,6 +103,10 @@ void linuxcnc_command(const LinuxcncOptions& options) {
   if (const auto url = options.card.url()) {
     options.local.world.refuse_with(options.card);
     own_card(options, *region, *url, machine, file == nullptr ? nullptr : &record);
+  } else if (!options.local.fast) {
+    PacedCard card(options.local, static_cast<unsigned>(machine.motors()), file == nullptr ? nullptr : &record);
+    serve_linuxcnc(options, *region, card, machine, file == nullptr ? nullptr : &record);
+    tell("note", card.path_text());
   } else {
     LocalCard local(options.local, static_cast<unsigned>(machine.motors()), file == nullptr ? nullptr : &record);
     own_card(options, *region, local.url(), machine, file == nullptr ? nullptr : &record);

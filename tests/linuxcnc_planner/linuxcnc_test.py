@@ -100,15 +100,28 @@ def whole():
     return f"{len(expected)} steps; longest call {seen['longest_call']} ns"
 
 
+def stop_realtime(run):
+    process = run.realtime_process()
+    for _ in range(3):
+        os.kill(process, signal.SIGSTOP)
+        time.sleep(0.3)
+        os.kill(process, signal.SIGCONT)
+        time.sleep(0.2)
+
+
+def whole_stalls():
+    """As stalls(), behind `trammel linuxcnc`."""
+    def steps(log):
+        made = [tuple(map(int, words[1:])) for words in log if words[0] == "step"]
+        return [(axis, direction, clock - made[0][0]) for clock, _, axis, direction in made]
+    quiet = steps(play("stalled", LONG_WAY, during=lambda run: None, trammel=TRAMMEL)[1])
+    seen, log = play("stalled", LONG_WAY, during=stop_realtime, trammel=TRAMMEL)
+    require(len(quiet) > 10_000 and steps(log) == quiet and seen["errors"] == [], f"steps at other times; {seen}")
+    return f"{len(quiet)} steps, all in their clocks"
+
+
 def stalls():
     """rtapi_app is stopped three times for 300 ms: the pulses come when they would have come."""
-    def stop_realtime(run):
-        process = run.realtime_process()
-        for _ in range(3):
-            os.kill(process, signal.SIGSTOP)
-            time.sleep(0.3)
-            os.kill(process, signal.SIGCONT)
-            time.sleep(0.2)
     quiet = play("stalled", LONG_WAY, during=lambda run: None)[1]
     seen, stalled = play("stalled", LONG_WAY, during=stop_realtime)
     times = pulse_times(quiet)
@@ -188,7 +201,7 @@ def refusals():
 
 
 SHORT = (path,)
-LONG = (whole, stalls, probe, pause_and_abort, outputs, owner_dies, refusals)
+LONG = (whole, whole_stalls, stalls, probe, pause_and_abort, outputs, owner_dies, refusals)
 
 
 def main():

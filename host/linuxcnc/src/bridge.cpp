@@ -200,8 +200,14 @@ void Bridge::stopped_by(std::uint32_t cause, const std::string& text) {
   watchdog_.reset();
   holding_ = false;
   if (stream_.is_open()) {
-    card_.stop();
-    card_.parts().registers.write(card_map::reg::kStreaming, 0, "stop");
+    try {
+      card_.stop();
+      card_.parts().registers.write(card_map::reg::kStreaming, 0, "stop");
+    } catch (const driver::LinkError&) {
+      throw;
+    } catch (const driver::Error& error) {  // a fault came first: clear() deals with both
+      tell(error.what());
+    }
     stream_.abandon();
   }
   set_stopped(cause, at, text);
