@@ -5,8 +5,9 @@ waits, allocates or takes a lock. `calls_test.py MODULE`."""
 import subprocess
 import sys
 
-FUNCTIONS = """tcqFull tpAbort tpActiveDepth tpAddCircle tpAddLine tpAddRigidTap tpClear tpCreate tpGetExecId tpGetExecTag
-tpGetMotionType tpGetPos tpIsDone tpMotData tpMotFunctions tpPause tpQueueDepth tpResume tpRunCycle tpSetAmax tpSetAout
+FUNCTIONS = """tcqFull tpAbort tpActiveDepth tpAddCircle tpAddLine tpAddRigidTap tpClear tpCreate tpGetExecId
+tpGetExecTag tpGetMotionType tpGetPos tpIsDone tpMotData tpMotFunctions tpPause tpQueueDepth tpResume tpRunCycle
+tpSetAmax tpSetAout
 tpSetCycleTime tpSetDout tpSetId tpSetPos tpSetRunDir tpSetSpindleSync tpSetTermCond tpSetVlimit tpSetVmax""".split()
 # While the module is loaded; then in LinuxCNC's periods (the system call is FUTEX_WAKE; messages go to a ring).
 AT_LOAD = "__errno_location fcntl fcntl64 fstat ftruncate getenv mmap open open64 snprintf strerror hal_exit hal_init "\

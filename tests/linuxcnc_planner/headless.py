@@ -1,4 +1,4 @@
-"""Headless LinuxCNC with the planner module, in namespaces of its own: no other LinuxCNC on the machine is in its way."""
+"""Headless LinuxCNC with the planner module, in namespaces of its own: no other LinuxCNC is in its way."""
 
 import json
 import os
@@ -132,7 +132,8 @@ class Headless:
         environment = {**os.environ, "HOME": str(self.folder), "TRAMMEL_LINUXCNC": self.name, "DISPLAY": ""}
         self.owner = subprocess.Popen(self.command(self.owner_command), cwd=self.folder, env=environment,
                                       stdout=subprocess.DEVNULL)
-        arguments = ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "--", "sh", "-c",
+        arguments = ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--kill-child", "--mount-proc",
+                     "--", "sh", "-c",
                      f"mount -t tmpfs tmpfs /tmp && mount --bind {self.folder}/modules {MODULES} && exec \"$@\"", "sh",
                      *self.command(["linuxcnc", "-r", "test.ini"])]
         self.output = open(self.folder / "linuxcnc.out", "w")

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""The planner module in headless LinuxCNC, against the runner and the card: `linuxcnc_test.py OWNER MODULE TRAMMEL [NAME...]`.
+"""The planner module in headless LinuxCNC, against the runner and the card:
 
-Tests without a name in SHORT run where TRAMMEL_LONG is set, or by their name. Root, or a user that may make namespaces.
+    linuxcnc_test.py OWNER MODULE TRAMMEL [NAME...]
+
+Without names: SHORT, and LONG where TRAMMEL_LONG is set. Needs root, for namespaces.
 """
 
 import os
