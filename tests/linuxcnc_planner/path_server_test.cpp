@@ -169,7 +169,10 @@ TEST(PathServer, RefusesByNameAndGoesOnAfterAnAbort) {
   PathBench bench;
   Operations bad;
   bad.feed({5}, 50).feed({5, 0, 0, 90}, 50).feed({9}, 50);
-  bench.run(bad.all);
+  bench.run(bad.all, [&](unsigned period) {
+    if (period == 500) bench.post(Operations().feed({8}, 50).all.front());
+    if (period < 1000) bench.post(TRAMMEL_RESUME);
+  });
   EXPECT_EQ(bench.status.refusals, 1U);
   EXPECT_EQ(bench.status.refusal, 2);
   EXPECT_THAT(std::string(bench.status.text), HasSubstr("axis A"));

@@ -15,13 +15,13 @@ PathQueue::PathQueue(trammel_region& region) : region_(region), taken_(head_of(r
 
 bool PathQueue::take() {
   const std::uint64_t head = head_of(region_);
-  const std::uint64_t before = taken_;
+  const std::size_t before = segments_.size();
   while (taken_ != head && !barrier_) {
     take_one(region_.operations[taken_ % TRAMMEL_OPERATIONS]);
     ++taken_;
     __atomic_store_n(&region_.operation_tail, taken_, __ATOMIC_RELEASE);
   }
-  return taken_ != before;
+  return segments_.size() != before;
 }
 
 void PathQueue::take_one(const trammel_operation& operation) {

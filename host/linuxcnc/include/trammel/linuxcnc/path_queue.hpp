@@ -18,7 +18,7 @@ class PathQueue {
   explicit PathQueue(trammel_region& region);
 
   // Takes what has come, up to the first operation that needs the card at rest (abort, clear, set pose). Gives back
-  // whether anything came. Lines that come behind refuse() are dropped.
+  // whether segments came. Those that come behind refuse() are dropped.
   bool take();
 
   // The last pause or resume: true from a pause on.
