@@ -184,7 +184,7 @@ def outputs():
     places = [place[0] for _, _, place in seen["outputs"][1:]]
     # 20 mm/s, and ui.py looks some milliseconds later.
     require(all(0 <= place - due < 1 for place, due in zip(places, (4, 8))), f"at {places}")
-    require(seen["waited"][0] == seen["waited"][1] == [1, 0], seen["waited"])
+    require(seen.get("waited") == [[1, 0], [1, 0]], f"it did not wait for the spindle: {seen}")
     return f"switched at X {places[0]:.2f} and {places[1]:.2f}; the first feed waited for the spindle"
 
 
