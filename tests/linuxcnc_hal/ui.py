@@ -74,6 +74,7 @@ def home():
     command.home(-1)
     until(lambda: stat.homed[:3] == (1, 1, 1), 60, "homed")
     wait_idle()
+    standing()
     result["home"] = position()
 
 
@@ -92,6 +93,7 @@ def mdi(text, seconds=60):
     command.mdi(text)
     command.wait_complete(seconds)
     wait_idle(seconds, text)
+    standing()
 
 
 def start_program(text):
@@ -131,6 +133,7 @@ def short():
     start_program("G21 G90 G17 G64 P0.02\nG0 X8 Y4 Z-4\nG1 F3000 X14\nG3 X18 Y8 I0 J4\nG2 X22 Y12 I4 J0\n"
                   "G1 Z-8\nG38.2 Z-30 F900\nG0 Z-6\nG1 X10 Y10\nM2\n")
     wait_idle()
+    standing()
     result["probed"] = [stat.probe_tripped, round(stat.probed_position[2], 4)]
     result["program"] = position()
     mode(linuxcnc.MODE_MDI)
@@ -144,6 +147,7 @@ def short():
     command.abort()
     command.wait_complete()
     wait_idle()
+    standing()
     result["aborted"] = position()
     mdi("G0 X20 Y15 Z-2")
     result["end"] = position()
