@@ -165,12 +165,12 @@ TEST(Bridge, AFullRingStopsTheMachine) {
   bench.enable();
   for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
   int full = 0;
-  for (int n = 201; n <= 300; ++n) {
+  for (int n = 201; n <= 600; ++n) {
     full += bench.post({n * 2.0}) ? 0 : 1;
     bench.pass();
   }
-  EXPECT_EQ(full, 100 - TRAMMEL_PERIODS);
-  for (int n = 301; n <= 320; ++n) bench.period({n * 2.0});
+  EXPECT_EQ(full, 400 - TRAMMEL_PERIODS);
+  for (int n = 601; n <= 620; ++n) bench.period({n * 2.0});
   EXPECT_TRUE(is_stopped(bench));
   EXPECT_EQ(bench.status().missing, 1U);
   EXPECT_LT(bench.status().position[0], 800);

@@ -8,7 +8,7 @@ import time
 
 from lcnc_bench import Bench, Farthest, wait_for
 
-LEAD = 6
+LEAD = 100  # periods: this host is no realtime one
 HAL = """loadrt threads name1=servo period1=1000000
 loadrt trammel joints=3 name={name}
 loadrt siggen num_chan=1
@@ -16,7 +16,7 @@ addf siggen.0.update servo
 addf trammel.0.read servo
 addf trammel.0.write servo
 setp trammel.0.lead-periods {lead}
-setp trammel.0.link-periods 50
+setp trammel.0.link-periods 300
 setp siggen.0.frequency 0
 setp siggen.0.amplitude 8
 setp siggen.0.offset -8

@@ -82,7 +82,8 @@ class Bench:
 
     def isolated(self, arguments):
         mount = f"mount --bind {self.folder}/modules {MODULES} && exec \"$@\""
-        return ["unshare", "--mount", "--ipc", "--net", "--", "sh", "-c", mount, "sh", *self.as_nobody(arguments)]
+        return ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "--",
+                "sh", "-c", mount, "sh", *self.as_nobody(arguments)]
 
     def start_hal(self, file):
         """halrun, with halcmd's commands on its standard input from then on."""
