@@ -76,7 +76,7 @@ TEST(Bridge, AMissingPeriodAtRestIsCountedAndForgotten) {
   ServoBench bench;
   bench.enable();
   bench.pass(100 * kServoClocks);
-  for (int n = 0; n < 10; ++n) bench.period({});
+  for (int n = 0; n < 500; ++n) bench.period({});
   EXPECT_EQ(bench.status().missing, 1U);
   EXPECT_FALSE(is_stopped(bench));
   for (int n = 1; n <= 100; ++n) bench.period({n * 1.0});

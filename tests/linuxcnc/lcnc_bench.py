@@ -41,10 +41,12 @@ class Bench:
             skip("LinuxCNC is not installed (scripts/setup --linuxcnc)")
         if os.geteuid() != 0:
             skip("a folder of modules is mounted for the test, which needs root")
-        self.trammel, self.name = trammel, name
+        self.name = name
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-linuxcnc-"))
         shutil.copytree(MODULES, self.folder / "modules")
         shutil.copy(module, self.folder / "modules")
+        # The checkout may lie where others may not read.
+        self.trammel = shutil.copy(trammel, self.folder / "trammel")
         for file in EXAMPLES.iterdir():
             shutil.copy(file, self.folder)
         subprocess.run(["chown", "-R", "nobody", self.folder], check=True)

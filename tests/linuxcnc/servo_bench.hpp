@@ -102,6 +102,8 @@ class ServoBench : public driver::StepSink, public ServoRecord {
   void enable(const Targets& at = {}) {
     due = engine->cycles();
     for (int n = 0; n < 3; ++n) period(at, 0);
+    // Behind a stop the time base takes its ramp to come back.
+    for (int n = 0; n < 1000 && status().state != TRAMMEL_STREAMING; ++n) period(at);
     for (int n = 0; n < 10; ++n) period(at);
   }
   const trammel_status& status() const { return bridge->status(); }

@@ -191,6 +191,12 @@ void Bridge::guarded(const std::function<void()>& call) {
   } catch (const driver::ArgumentError& error) {
     ++status_.refused;
     stopped_by(TRAMMEL_CAUSE_TARGET, error.what());
+  } catch (const driver::StateError& error) {
+    // As a rule the link was so slow that the line was over when the card was looked at: at rest nothing is lost by it.
+    if (!stream_.is_open() || !stream_.at_rest() || inside_) return stopped_by(TRAMMEL_CAUSE_OTHER, error.what());
+    ++status_.missing;
+    close(true);
+    tell(fmt::format("under-run at rest, nothing was lost: {}", error.what()));
   } catch (const driver::Error& error) {
     stopped_by(TRAMMEL_CAUSE_OTHER, error.what());
   }
