@@ -8,6 +8,7 @@ import pwd
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -135,6 +136,45 @@ class Bench:
         if owner.poll() is None:
             owner.send_signal(signal.SIGTERM)
             owner.wait(20)
+
+
+SKIPPED = 77  # ctest's SKIP_RETURN_CODE of these tests
+
+
+def requirements(modules):
+    """Why these tests cannot run here; empty if they can."""
+    for program in ("halrun", "linuxcnc", "unshare", "setpriv", "chrt"):
+        if shutil.which(program) is None:
+            return f"{program} is not installed: scripts/setup --linuxcnc installs LinuxCNC"
+    if not (pathlib.Path(modules) / "trammel.so").exists():
+        return f"{modules}/trammel.so is not built: it needs linuxcnc-uspace-dev, scripts/setup --linuxcnc"
+    if os.geteuid() != 0:
+        return "only root can give LinuxCNC the built modules in a namespace of its own"
+    return ""
+
+
+def stalled(result, lead):
+    """Whether LinuxCNC's thread or the owner paused for longer than the periods ahead last, as measured."""
+    longest = max(result["longest-period"], result["longest-silence"])
+    return longest > lead * PERIOD * 0.9
+
+
+def run_tests(tests, modules):
+    """Each is a function that returns what a machine's stall spoiled, and nothing where all was well."""
+    reason = requirements(modules)
+    if reason and os.environ.get("TRAMMEL_REQUIRE_LINUXCNC"):
+        sys.exit(f"error: {reason}")
+    if reason:
+        print(f"skipped: {reason}")
+        sys.exit(SKIPPED)
+    for test in tests:
+        for attempt in range(3):
+            spoiled = test()
+            if not spoiled:
+                break
+            print(f"{test.__name__}: run again: {spoiled}", flush=True)
+        check(not spoiled, f"{test.__name__}: {spoiled}, three times")
+        print(f"{test.__name__}: passed", flush=True)
 
 
 def wait_until(condition, seconds, what):
