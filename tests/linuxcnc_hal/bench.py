@@ -72,9 +72,9 @@ class Bench:
     def write(self, file, text):
         (self.folder / file).write_text(text)
 
-    def as_user(self, arguments, priority=("chrt", "--fifo", "1")):
+    def as_user(self, arguments, priority=("chrt", "--fifo", "2")):
         user = pwd.getpwnam(USER)
-        # What is realtime at a machine goes before what else runs here.
+        # What is realtime at a machine goes before what else runs here; LinuxCNC before the owner, which it wakes.
         return [*priority, "setpriv", "--reuid", str(user.pw_uid), "--regid", str(user.pw_gid), "--clear-groups", *arguments]
 
     def environment(self):
@@ -90,7 +90,7 @@ class Bench:
         begun = out.tell()
         owner = subprocess.Popen(
             self.as_user([self.trammel, "linuxcnc", "--name", self.name, "--machine", "machine.toml", *arguments],
-                         priority=("chrt", "--fifo", "2")),
+                         priority=("chrt", "--fifo", "1")),
             cwd=self.folder, env=self.environment(), stdout=out, stderr=subprocess.STDOUT)
         self.owners.append(owner)
         wait_until(lambda: "LinuxCNC finds" in self.text("owner.log")[begun:] or owner.poll() is not None, 20, "the owner is ready")
