@@ -29,7 +29,7 @@ def near(found, place, tolerance, what):
 
 def judge_record(bench, result, least):
     record = Record(bench.folder / "record")
-    print(record.judge(least))
+    print(record.judge(least, LEAD))
     net = [record.net.get(axis, 0) for axis in range(3)]
     check(net == result["counts"], f"the card made {net} pulses and told {result['counts']}")
 

@@ -12,12 +12,13 @@ class Stream:
         self.lines = []           # (number, duration in ns, targets in 2^-24 pulses)
         self.steps = []           # (clock, command, axis, direction)
 
-    def furthest(self):
+    def furthest(self, lead):
         """Largest distance, in pulses, between a target and the axis when its line has ended; how many lines. Only lines
         before the last step count: what the machine's end left in the queue has none."""
         steps = {}
         for _, command, axis, direction in self.steps:
-            steps.setdefault(command - 1, []).append((axis, direction))  # the card's first line is 1
+            # The stream counts its commands: behind the first lines, as many as the lead, comes one that is no line.
+            steps.setdefault(command if command < lead else command - 1, []).append((axis, direction))
         at, most = list(self.standing), 0.0
         whole = self.lines[:max(steps, default=0)]
         for index, (_, _, targets) in enumerate(whole):
@@ -43,9 +44,9 @@ class Record:
                     self.streams[-1].steps.append(tuple(numbers))
         check(self.streams, "nothing was streamed")
 
-    def judge(self, least):
+    def judge(self, least, lead):
         """Every axis within half a pulse of every target, in at least so many lines. What it found, for the log."""
-        found = [stream.furthest() for stream in self.streams]
+        found = [stream.furthest(lead) for stream in self.streams]
         most, lines = max(most for most, _ in found), sum(lines for _, lines in found)
         check(lines >= least, f"{lines} lines were compared, fewer than {least}")
         check(most <= 0.5, f"an axis was {most} pulses from its target")
