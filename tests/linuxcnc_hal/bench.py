@@ -22,7 +22,7 @@ UNIT = 1 << 24   # of targets, per pulse
 
 class Bench:
     def __init__(self, trammel, modules):
-        self.trammel = str(trammel)
+        self.trammel = str(pathlib.Path(trammel).resolve())
         self.name = f"test{os.getpid()}"
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-linuxcnc-", dir="/var/tmp"))
         shutil.copytree(MODULES, self.folder / "modules")
