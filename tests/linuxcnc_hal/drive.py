@@ -44,10 +44,12 @@ def caught_up():
 
 
 def stands():
-    """The same counts for 50 ms, since nothing tells when nothing comes."""
+    """At rest, and the same counts for 0.3 s, since nothing tells when nothing comes."""
+    if not pin("at-rest"):
+        return False
     seen = [pin(f"joint.{n:02d}.counts") for n in range(3)]
-    time.sleep(0.05)
-    return seen == [pin(f"joint.{n:02d}.counts") for n in range(3)]
+    time.sleep(0.3)
+    return pin("at-rest") and seen == [pin(f"joint.{n:02d}.counts") for n in range(3)]
 
 
 def run():

@@ -60,11 +60,13 @@ def follows():
         if late and stalled(result, LEAD):
             return f"the machine stalled: {result}"
         check(not late and result["link-ok"], f"{result}")
-        # The stated latency: the periods ahead and two more, at the generator's highest speed; what the thread and the
-        # owner were late by, as measured, comes on top.
-        speed = 2 * math.pi * FREQUENCY * AMPLITUDE
+        # The stated latency is that of the periods ahead, two more, and two that the owner lets stand; what LinuxCNC's thread and the owner paused, as
+        # measured, comes on top. The feedback trails by no more than the latency told, at the generator's speed.
         paused = (result["longest-period"] + result["longest-silence"]) * 1e-9
-        allowed = speed * ((LEAD + 2) * PERIOD * 1e-9 + paused) + 1 / 80
+        told = result["longest latency"]
+        check(told <= (LEAD + 4) * PERIOD * 1e-9 + paused, f"a latency of {told} s, with pauses of {paused} s")
+        speed = 2 * math.pi * FREQUENCY * AMPLITUDE
+        allowed = speed * (told + PERIOD * 1e-9 + paused) + 1 / 80
         check(result["furthest"] <= allowed, f"the feedback was {result['furthest']} mm behind, more than {allowed}")
         check(result["furthest"] >= speed * (LEAD - 2) * PERIOD * 1e-9, f"only {result['furthest']} mm behind")
         record = Record(bench.folder / "record")
