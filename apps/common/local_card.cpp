@@ -15,6 +15,8 @@
 #include "trammel/transport/byte_stream.hpp"
 
 namespace trammel::app {
+namespace {
+
 sim::SimulationOptions local_engine(const LocalCardChoice& choice, unsigned axes) {
   sim::SimulationOptions options;
   options.kind = choice.engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
@@ -23,6 +25,8 @@ sim::SimulationOptions local_engine(const LocalCardChoice& choice, unsigned axes
   options.rtl_thread = true;
   return options;
 }
+
+}  // namespace
 
 void LocalCardChoice::add_to(CLI::App& command) {
   command
@@ -41,9 +45,8 @@ void LocalCardChoice::add_to(CLI::App& command) {
 
 class LocalCard::Served {
  public:
-  Served(const LocalCardChoice& choice, unsigned axes, driver::StepSink* steps)
-      : path_(steps),
-        world_(choice.world.make(choice.clock_hz, {})),
+  Served(const LocalCardChoice& choice, unsigned axes)
+      : world_(choice.world.make(choice.clock_hz, {})),
         listener_(transport::listen_tcp("127.0.0.1", 0)),
         engine_(in_world(world_.get(), sim::make_engine(local_engine(choice, axes)))),
         token_(serve::random_token()) {
@@ -75,18 +78,11 @@ class LocalCard::Served {
   // All steps on the path.
   class Path final : public driver::StepSink {
    public:
-    explicit Path(driver::StepSink* also) : also_(also) {}
-    void pin_step(const driver::PinStep& step) override {
-      if (also_ != nullptr) also_->pin_step(step);
-    }
-    void path_step(const driver::PathStep& step) override {
-      identity_.path_step(step);
-      if (also_ != nullptr) also_->path_step(step);
-    }
+    void pin_step(const driver::PinStep& /*step*/) override {}
+    void path_step(const driver::PathStep& step) override { identity_.path_step(step); }
     const run::PathIdentity& identity() const { return identity_; }
 
    private:
-    driver::StepSink* also_;
     run::PathIdentity identity_;
   };
 
@@ -102,18 +98,17 @@ class LocalCard::Served {
     if (thread_.joinable()) thread_.join();
   }
 
-  Path path_;
   std::unique_ptr<world::World> world_;
   std::unique_ptr<transport::Listener> listener_;
   std::unique_ptr<sim::Engine> engine_;
   std::string token_;
+  Path path_;
   std::unique_ptr<serve::CardServer> server_;
   std::atomic<bool> ended_{false};
   std::thread thread_;
 };
 
-LocalCard::LocalCard(const LocalCardChoice& choice, unsigned axes, driver::StepSink* steps)
-    : served_(std::make_unique<Served>(choice, axes, steps)) {}
+LocalCard::LocalCard(const LocalCardChoice& choice, unsigned axes) : served_(std::make_unique<Served>(choice, axes)) {}
 LocalCard::~LocalCard() = default;
 
 transport::CardUrl LocalCard::url() const { return transport::parse_card_url(served_->url()); }

@@ -6,8 +6,6 @@
 #include <string>
 
 #include "command_line.hpp"
-#include "trammel/driver/steps.hpp"
-#include "trammel/sim/engines.hpp"
 #include "trammel/transport/card_url.hpp"
 #include "world_choice.hpp"
 
@@ -23,14 +21,10 @@ struct LocalCardChoice {
   void add_to(CLI::App& command);
 };
 
-// Of its engine.
-sim::SimulationOptions local_engine(const LocalCardChoice& choice, unsigned axes);
-
 class LocalCard {
  public:
   // Begins to run at once. `axes`: 1 to 8. Throws UsageError for a world that cannot be read, and driver::LinkError.
-  // `steps`, where there is one, is told all steps, in the card's thread; it must outlive the card.
-  LocalCard(const LocalCardChoice& choice, unsigned axes, driver::StepSink* steps = nullptr);
+  LocalCard(const LocalCardChoice& choice, unsigned axes);
   ~LocalCard();
   LocalCard(const LocalCard&) = delete;
   LocalCard& operator=(const LocalCard&) = delete;

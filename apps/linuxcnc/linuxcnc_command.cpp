@@ -62,11 +62,10 @@ void tell_counts(const trammel_status& status) {
                            status.late, status.dropped, status.refused));
 }
 
-void serve_linuxcnc(const LinuxcncOptions& options, linuxcnc::Region& region, driver::Bus& link,
+void serve_linuxcnc(const LinuxcncOptions& options, linuxcnc::Region& region, driver::Bus& card_bus,
                     const machine::Machine& machine, MotionRecord* record) {
-  linuxcnc::PathBus bus(link);
+  linuxcnc::PathBus bus(card_bus);
   driver::Card card = driver::Card::open(bus);
-  require_axes(card, machine);
   const auto path = path_side(options, region, card, bus, machine);
   linuxcnc::BridgeOptions bridge_options;
   bridge_options.note = [](const std::string& text) { tell("note", text); };
@@ -77,15 +76,6 @@ void serve_linuxcnc(const LinuxcncOptions& options, linuxcnc::Region& region, dr
   finish_standard_streams();
   bridge.run([] { return g_linuxcnc_ended != 0; });
   tell_counts(bridge.status());
-}
-
-void own_card(const LinuxcncOptions& options, linuxcnc::Region& region, const transport::CardUrl& url,
-              const machine::Machine& machine, MotionRecord* record) {
-  with_card(url, Purpose::kMove, [&](driver::Card& first, transport::Connection& connection) {
-    require_axes(first, machine);
-    if (options.card.text) take_over(first, options.card, machine);
-    serve_linuxcnc(options, region, connection.bus(), machine, record);
-  });
 }
 
 void linuxcnc_command(const LinuxcncOptions& options) {
@@ -100,17 +90,18 @@ void linuxcnc_command(const LinuxcncOptions& options) {
   } catch (const linuxcnc::RegionError& error) {
     throw UsageError(error.what());
   }
+  MotionRecord* const recorded = file == nullptr ? nullptr : &record;
   if (const auto url = options.card.url()) {
     options.local.world.refuse_with(options.card);
-    own_card(options, *region, *url, machine, file == nullptr ? nullptr : &record);
-  } else if (!options.local.fast) {
-    PacedCard card(options.local, static_cast<unsigned>(machine.motors()), file == nullptr ? nullptr : &record);
-    serve_linuxcnc(options, *region, card, machine, file == nullptr ? nullptr : &record);
-    tell("note", card.path_text());
+    with_card(*url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
+      require_axes(card, machine);
+      take_over(card, options.card, machine);
+      serve_linuxcnc(options, *region, connection.bus(), machine, recorded);
+    });
   } else {
-    LocalCard local(options.local, static_cast<unsigned>(machine.motors()), file == nullptr ? nullptr : &record);
-    own_card(options, *region, local.url(), machine, file == nullptr ? nullptr : &record);
-    tell("note", local.end());
+    PacedCard local(options.local, static_cast<unsigned>(machine.motors()), recorded);
+    serve_linuxcnc(options, *region, local, machine, recorded);
+    tell("note", local.text());
   }
   if (file == nullptr) return;
   outputs.open();
@@ -133,6 +124,7 @@ void add_linuxcnc_command(CLI::App& app) {
       ->add_option("--record", options->record,
                    "write each period as it was sent, and each step of a simulated card, as CSV")
       ->type_name("FILE");
+  options->local.engine = "model";  // the Verilated card does not keep up with a kilohertz
   options->local.add_to(*command);
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);

@@ -75,6 +75,14 @@ static void lose(struct card* card, const char* why) {
   rtapi_print_msg(RTAPI_MSG_ERR, "trammel: %s; targets are followed again after the machine was off\n", why);
 }
 
+/* The realtime printf knows no "%.*s". */
+static void tell_stop(const struct trammel_status* status) {
+  char text[sizeof status->text];
+  memcpy(text, status->text, sizeof text);
+  text[sizeof text - 1] = '\0';
+  rtapi_print_msg(RTAPI_MSG_ERR, "trammel: stop cause %u: %s\n", status->cause, text);
+}
+
 /* In each period, with the newest status. */
 static void watch(struct card* card) {
   const struct trammel_status* status = status_of(card);
@@ -90,10 +98,7 @@ static void watch(struct card* card) {
     lose(card, "`trammel linuxcnc` does not answer: it has ended, was stopped, or has lost the card");
   }
   if (enabled && card_failed(card)) lose(card, "the card has stopped");
-  if (card_failed(card) && !card->told && *card->pins->link_ok) {
-    rtapi_print_msg(RTAPI_MSG_ERR, "trammel: stop cause %u: %.*s\n", status->cause, (int)sizeof status->text - 1,
-                    status->text);
-  }
+  if (card_failed(card) && !card->told && *card->pins->link_ok) tell_stop(status);
   card->told = card_failed(card);
 }
 

@@ -12,29 +12,20 @@ class Stream:
         self.lines = []           # (number, duration in ns, targets in 2^-24 pulses)
         self.steps = []           # (clock, command, axis, direction)
 
-    def furthest(self):
-        """Largest distance, in pulses, between a target and the axis when its line has ended. A stream that was stopped
-        ends before its last lines: only those with a later step count."""
+    def furthest(self, lead):
+        """Largest distance, in pulses, between a target and the axis when its line has ended; how many lines. Only lines
+        before the last step count: what the machine's end left in the queue has none."""
         steps = {}
         for _, command, axis, direction in self.steps:
-            steps.setdefault(command, []).append((axis, direction))
-        if not steps:
-            return 0.0, 0
-        first = self.first_command(steps)
-        at, most, compared = list(self.standing), 0.0, 0
-        for index, (_, _, targets) in enumerate(self.lines):
-            if first + index > max(steps):
-                break
-            for axis, direction in steps.get(first + index, []):
+            # The stream counts its commands: behind the first lines, as many as the lead, comes one that is no line.
+            steps.setdefault(command if command < lead else command - 1, []).append((axis, direction))
+        at, most = list(self.standing), 0.0
+        whole = self.lines[:max(steps, default=0)]
+        for index, (_, _, targets) in enumerate(whole):
+            for axis, direction in steps.get(index, []):
                 at[axis] += direction
-            if first + index == max(steps):
-                break  # may have been cut short
-            compared += 1
             most = max(most, max(abs(a - t / UNIT) for a, t in zip(at, targets)))
-        return most, compared
-
-    def first_command(self, steps):
-        return 0
+        return most, len(whole)
 
 
 class Record:
@@ -52,3 +43,11 @@ class Record:
                 if self.streams:
                     self.streams[-1].steps.append(tuple(numbers))
         check(self.streams, "nothing was streamed")
+
+    def judge(self, least, lead):
+        """Every axis within half a pulse of every target, in at least so many lines. What it found, for the log."""
+        found = [stream.furthest(lead) for stream in self.streams]
+        most, lines = max(most for most, _ in found), sum(lines for _, lines in found)
+        check(lines >= least, f"{lines} lines were compared, fewer than {least}")
+        check(most <= 0.5, f"an axis was {most} pulses from its target")
+        return f"{lines} lines of {len(self.streams)} streams: at most {most:.4f} pulses from the target"

@@ -74,6 +74,7 @@ def home():
     command.home(-1)
     until(lambda: stat.homed[:3] == (1, 1, 1), 60, "homed")
     wait_idle()
+    standing()
     result["home"] = position()
 
 
@@ -92,6 +93,7 @@ def mdi(text, seconds=60):
     command.mdi(text)
     command.wait_complete(seconds)
     wait_idle(seconds, text)
+    standing()
 
 
 def start_program(text):
@@ -131,6 +133,7 @@ def short():
     start_program("G21 G90 G17 G64 P0.02\nG0 X8 Y4 Z-4\nG1 F3000 X14\nG3 X18 Y8 I0 J4\nG2 X22 Y12 I4 J0\n"
                   "G1 Z-8\nG38.2 Z-30 F900\nG0 Z-6\nG1 X10 Y10\nM2\n")
     wait_idle()
+    standing()
     result["probed"] = [stat.probe_tripped, round(stat.probed_position[2], 4)]
     result["program"] = position()
     mode(linuxcnc.MODE_MDI)
@@ -144,6 +147,7 @@ def short():
     command.abort()
     command.wait_complete()
     wait_idle()
+    standing()
     result["aborted"] = position()
     mdi("G0 X20 Y15 Z-2")
     result["end"] = position()
@@ -160,8 +164,54 @@ def short():
     result["back"] = position()
 
 
+PROGRAM = ("G21 G90 G17 G64 P0.02\nG0 X8 Y4 Z-4\nG1 F3000 X14\nG3 X18 Y8 I0 J4\nG2 X22 Y12 I4 J0\nG1 Z-8\n"
+           "G0 Z-6\nG1 X10 Y10\nM2\n")
+
+
+def dropped():
+    hal.set_p("trammel.test-drop-one-in", "100")
+    prepare()
+    start_program(PROGRAM)
+    wait_idle()
+    standing()
+    result["program"] = position()
+
+
+def move_far():
+    prepare()
+    mode(linuxcnc.MODE_MDI)
+    command.mdi("G1 F1800 X60")
+    until(lambda: stat.actual_position[0] > 10, 10, "on the way")
+    pathlib.Path("moving").touch()
+
+
+def long_move():
+    move_far()
+    wait_idle()
+    standing()
+
+
+def machine_off():
+    result["read before"], result["write before"] = pin("longest-read"), pin("longest-write")
+    until(lambda: stat.task_state == linuxcnc.STATE_ESTOP and not stat.enabled, 20, "machine off")
+    result["off"] = not any(hal.get_value(f"joint.{n}.amp-enable-out") for n in range(3))
+
+
+def killed_only():
+    move_far()
+    machine_off()
+
+
+def killed():
+    move_far()
+    machine_off()
+    pathlib.Path("off").touch()
+    until(lambda: pin("link-ok"), 20, "a new owner")
+    result["new owner"] = standing()
+
+
 def measures():
-    for name in ("longest-read", "longest-write", "longest-period", "longest-silence", "underrun", "late", "refused",
+    for name in ("longest-read", "longest-write", "longest-period", "longest-silence", "underrun", "late", "dropped", "refused",
                  "packet-error-total", "latency", "lead-periods", "stop-cause"):
         result[name] = pin(name)
     result["counts"] = [pin(f"joint.{n:02d}.counts") for n in range(3)]

@@ -319,7 +319,7 @@ TEST_F(Component, FullRingDropsAndGoesOn) {
   switch_on();
   stub::u32("trammel.link-periods") = 1000;
   const std::uint64_t before = region_->period_head;
-  periods(200, false);
+  periods(TRAMMEL_PERIODS + 50, false);
   EXPECT_EQ(region_->period_head - region_->period_tail, static_cast<unsigned>(TRAMMEL_PERIODS));
   periods(1);
   EXPECT_EQ(region_->period_head, before + TRAMMEL_PERIODS);

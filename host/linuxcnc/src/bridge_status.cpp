@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/linuxcnc/bridge.hpp"
 #include "trammel/linuxcnc/joint_settings.hpp"
 
@@ -19,7 +20,7 @@ std::int64_t monotonic_now() {
 }  // namespace
 
 void Bridge::serve_path() {
-  inside_ = true;
+  inside_ = true;  // PathSide serves the bus itself
   try {
     guarded([this] { path_.serve([this] { return path_turn(); }); });
   } catch (...) {
@@ -51,13 +52,14 @@ void Bridge::take_settings() {
 void Bridge::publish() {
   status_.flags = 0;
   look_->look(status_);
+  if (watchdog_) card_.parts().watchdog.look();  // where nothing is sent, as in a hold
   status_.time = monotonic_now();
   const driver::Status& card = look_->snapshot().status;
   // The card has stopped, and no period has come that would have met it.
   if (card.faulted && !stopped_ && !inside_) stopped_by_fault(look_->snapshot().faults);
   status_.state = stopped_            ? TRAMMEL_STOPPED
                   : stream_.is_open() ? TRAMMEL_STREAMING
-                  : inside_           ? TRAMMEL_ON_PATH
+                  : path_wanted_      ? TRAMMEL_ON_PATH
                                       : TRAMMEL_IDLE;
   if (stopped_) status_.flags |= TRAMMEL_STATUS_FAULT;
   if (!card.busy || (stream_.is_open() && stream_.at_rest())) {

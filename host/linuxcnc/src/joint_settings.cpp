@@ -11,6 +11,7 @@ namespace trammel::linuxcnc {
 namespace {
 
 constexpr double kSpeedReserve = 1.05;
+constexpr std::uint32_t kMostLead = 128;  // periods: half of what the ring holds
 
 std::chrono::nanoseconds given_or(std::uint32_t given, std::chrono::nanoseconds of_machine) {
   return given != 0 ? std::chrono::nanoseconds(given) : of_machine;
@@ -31,7 +32,7 @@ std::array<double, card_map::kMaxAxes> pulses_per_unit(const machine::Machine& m
 
 ServoSettings servo_settings(const machine::Machine& machine, const trammel_settings& settings) {
   ServoSettings servo;
-  if (settings.lead_periods != 0) servo.lead = std::min<std::uint32_t>(settings.lead_periods, TRAMMEL_PERIODS / 2);
+  if (settings.lead_periods != 0) servo.lead = std::min(settings.lead_periods, kMostLead);
   const kinematics::Kinematics kinematics(machine);
   for (std::size_t n = 0; n < kinematics.joints(); ++n) {
     const machine::MachineAxis& axis = machine.axes[kinematics.joint(n).settings];

@@ -1,6 +1,7 @@
 #include "trammel/linuxcnc/servo_stream.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "trammel/driver/low_level/card_parts.hpp"
@@ -13,7 +14,8 @@ using driver::PositionStream;
 constexpr double kMostCorrection = 0.002;  // of a period: what a speed differs by
 constexpr double kMeanPeriods = 64;        // over which the number of queued periods is averaged
 constexpr double kFullError = 0.5;         // periods at which the whole correction is made
-constexpr std::uint64_t kSpare = 2;        // periods more than the lead from which on a resting one is left out
+constexpr std::chrono::nanoseconds kLook = std::chrono::milliseconds(1);
+constexpr std::uint64_t kSpare = 2;  // periods more than the lead from which on a resting one is left out
 
 // As the driver rounds.
 std::int64_t nearest_pulse(std::int64_t target) {
@@ -85,21 +87,44 @@ void ServoStream::follow(const trammel_period& period, bool held) {
 }
 
 void ServoStream::close() {
+  if (!resting_) return end_on_ramp();
   const std::unique_ptr<PositionStream> stream = std::move(stream_);
-  if (resting_) {
-    stream->finish();
-  } else {
-    card_.stop();
-    card_.parts().registers.write(card_map::reg::kStreaming, 0, "position stream: end");
+  stream->finish();
+  note_end();
+}
+
+// The stream is left without a period: the card goes on along its last line for `stale_periods`, and then ramps down
+// with a fault, which is no one's but ours. In a hold no period is missing, and an abort moves nothing.
+void ServoStream::end_on_ramp() {
+  stream_.reset();
+  const auto deadline = std::chrono::seconds(2);
+  try {
+    for (std::chrono::nanoseconds waited{0}; !card_.read_status().faulted; waited += kLook) {
+      if (card_.read_status().held) card_.stop();
+      if (!card_.read_status().busy) break;
+      if (waited > deadline) throw driver::TimeoutError("position stream: waiting for the end of its lines", 0);
+      card_.bus().sleep(kLook);
+    }
+  } catch (const driver::FaultError&) {
+    // It came while the hold was on its way.
   }
-  if (record_ != nullptr) record_->closed(card_.read_snapshot().time);
+  card_.wait_until_stopped();
+  const std::uint32_t faults = card_.read_faults();
+  note_end();
+  if ((faults & ~card_map::field::kFaultMissingPeriod) != 0) throw driver::FaultError(faults, "end of a stream");
+  if (faults != 0) card_.clear_faults();
+  card_.parts().registers.write(card_map::reg::kStreaming, 0, "position stream: end");
 }
 
 void ServoStream::abandon() {
   const bool was_open = is_open();
   stream_.reset();
   card_.wait_until_stopped();
-  if (was_open && record_ != nullptr) record_->closed(card_.read_snapshot().time);
+  if (was_open) note_end();
+}
+
+void ServoStream::note_end() {
+  if (record_ != nullptr) record_->closed(card_.read_snapshot().time);
 }
 
 }  // namespace trammel::linuxcnc

@@ -58,7 +58,8 @@ class Bridge {
   void serve_path();
   bool path_turn();
   void open();
-  void close();
+  void close(bool ramp = false);
+  void waiting(const std::function<void()>& call);
   void set_hold(bool hold);
   void clear();
   // Calls `call`, and makes what it throws the cause of a stop.

@@ -55,9 +55,11 @@ class ServoStream {
   void follow(const trammel_period& period, bool held);
   // Whether the last line moved nothing: the card ends it at rest.
   bool at_rest() const { return resting_; }
-  // Ends the stream: at rest behind the last line, else on the card's ramp. Errors as of PositionStream::finish() and
-  // Card::stop(); it is closed behind them.
+  // Ends the stream: at rest behind the last line, else on the card's ramp. Waits until the card stands. FaultError for
+  // a fault of another cause; else errors as of PositionStream::finish(). It is closed behind them.
   void close();
+  // The same, always on the ramp: for a stream in which a period was refused.
+  void end_on_ramp();
   // Behind a fault: waits until the card stands, and closes. Leaves the card's fault as it is.
   void abandon();
 
@@ -68,6 +70,7 @@ class ServoStream {
  private:
   std::int64_t duration_of(const trammel_period& period, std::uint64_t periods);
   bool can_skip(bool moves, bool held);
+  void note_end();
 
   driver::Card& card_;
   ServoRecord* record_;

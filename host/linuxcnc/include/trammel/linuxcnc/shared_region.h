@@ -42,7 +42,7 @@ enum { TRAMMEL_LOCK_OWNER = 0, TRAMMEL_LOCK_HAL = 1, TRAMMEL_LOCK_PLANNER = 2 };
 enum {
   TRAMMEL_JOINTS = 8,          /* most that a card has */
   TRAMMEL_POSE = 9,            /* X Y Z A B C U V W */
-  TRAMMEL_PERIODS = 64,        /* slots: at 1 kHz the owner may sleep for 60 ms before one is lost */
+  TRAMMEL_PERIODS = 256,       /* slots: at 1 kHz the owner may sleep for 250 ms before one is lost */
   TRAMMEL_OPERATIONS = 2048,   /* slots: LinuxCNC's own planner queues 2,000 segments */
   TRAMMEL_SEGMENT_OUTPUTS = 8, /* digital outputs that a segment may switch */
   TRAMMEL_TRIES = 4
