@@ -21,6 +21,9 @@
 #include "info/info_command.hpp"
 #include "jog/jog_command.hpp"
 #include "line/line_command.hpp"
+#ifdef __linux__
+#include "linuxcnc/linuxcnc_command.hpp"
+#endif
 #include "machine/machine_command.hpp"
 #include "methods/methods_command.hpp"
 #include "panel/panel_command.hpp"
@@ -79,6 +82,9 @@ int run_command_line(int argc, char** argv, const char* version) {
   add_calibrate_command(app);
   add_serve_command(app);
   add_grbl_command(app);
+#ifdef __linux__
+  add_linuxcnc_command(app);
+#endif
   add_panel_command(app);
   add_world_command(app);
   add_steps_command(app);

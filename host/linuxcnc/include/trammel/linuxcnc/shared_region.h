@@ -35,14 +35,14 @@
 #define TRAMMEL_REGION_FOLDER "/dev/shm"
 #define TRAMMEL_REGION_PREFIX "trammel-linuxcnc."
 /* Raised with every change of this layout. Each side writes it when it attaches, and leaves another version alone. */
-#define TRAMMEL_REGION_VERSION 1u
+#define TRAMMEL_REGION_VERSION 3u
 
 enum { TRAMMEL_LOCK_OWNER = 0, TRAMMEL_LOCK_HAL = 1, TRAMMEL_LOCK_PLANNER = 2 };
 
 enum {
   TRAMMEL_JOINTS = 8,          /* most that a card has */
   TRAMMEL_POSE = 9,            /* X Y Z A B C U V W */
-  TRAMMEL_PERIODS = 64,        /* slots: at 1 kHz the owner may sleep for 60 ms before one is lost */
+  TRAMMEL_PERIODS = 256,       /* slots: at 1 kHz the owner may sleep for 250 ms before one is lost */
   TRAMMEL_OPERATIONS = 2048,   /* slots: LinuxCNC's own planner queues 2,000 segments */
   TRAMMEL_SEGMENT_OUTPUTS = 8, /* digital outputs that a segment may switch */
   TRAMMEL_TRIES = 4
@@ -88,6 +88,12 @@ enum {
   TRAMMEL_STOPPED = 3
 }; /* struct trammel_status.state */
 
+/* Causes behind those of the register map, for struct trammel_status.cause. */
+enum {
+  TRAMMEL_CAUSE_TARGET = 64, /* a target that the driver refused; see text */
+  TRAMMEL_CAUSE_OTHER = 65   /* the card was reset or used by somebody else; see text */
+};
+
 enum {
   TRAMMEL_STATUS_LINK = 1u << 0,   /* the card answers */
   TRAMMEL_STATUS_FAULT = 1u << 1,  /* something stopped it that was not cleared yet: cause, stop_position */
@@ -107,11 +113,12 @@ struct trammel_status {
   uint32_t inputs;                  /* bit n: level of the card's input n behind polarity and filter */
   uint32_t homed, valid;            /* bit n: of joint n, as the card keeps them */
   uint32_t fault;                   /* FAULT, bits as in the register map */
-  uint32_t cause;                   /* first cause that stopped it: its number in the register map + 1; 0: none */
+  uint32_t cause;                   /* first cause that stopped it: its bit of FAULT + 1, TRAMMEL_CAUSE_...; 0: none */
   int64_t stop_position[TRAMMEL_JOINTS];    /* pulses, when the cause came */
   uint64_t last_period;                     /* number of the last period that was sent to the card */
   uint32_t ahead;                           /* periods queued in the card that it has not begun */
   uint32_t late;                            /* periods that came after the card had to go on along its line */
+  uint32_t dropped;                         /* periods that never came: gaps of trammel_period.number */
   uint32_t missing;                         /* streams that ended in a ramp for want of a period: under-runs */
   uint32_t refused;                         /* periods that the driver refused (too fast, beyond a soft limit) */
   uint64_t captures;                        /* edges of the probe, counted */
@@ -121,12 +128,17 @@ struct trammel_status {
   double pulses_per_unit[TRAMMEL_JOINTS]; /* in force */
   uint32_t joints;                        /* of the card */
   /* Of the path operations. */
-  uint64_t operations_done; /* operations taken, all of them in order */
-  uint64_t segments_begun;  /* number of the segment under way (struct trammel_operation.segment), or the last one */
-  double distance_to_go;    /* of it, machine units */
-  double path_speed;        /* machine units/s */
-  int32_t refusal;          /* id of the operation that was refused, and what: text; 0: none */
-  char text[128];           /* UTF-8, ends with 0: the last refusal or stop in words */
+  uint64_t operations_done;  /* counts those dealt with, in order: segments are queued, all others are in force */
+  uint64_t segments_begun;   /* number of the segment under way (struct trammel_operation.segment), or the last one */
+  double distance_to_go;     /* of it, machine units: the straight way to its end */
+  double path_speed;         /* machine units/s */
+  double pose[TRAMMEL_POSE]; /* where the card stands on the path, as LinuxCNC counts; a multiple of a pulse */
+  uint64_t probes;           /* counts probing segments that have ended */
+  uint32_t probe_tripped;    /* the last one met its edge */
+  double probe_pose[TRAMMEL_POSE]; /* there, as the card captured it; where it ended, if it did not */
+  uint64_t refusals;               /* counts what ended a path: refused operations, faults of the card; see text */
+  int32_t refusal;                 /* id of the last one's operation */
+  char text[128];                  /* UTF-8, ends with 0: the last refusal or stop in words */
 };
 
 /* ---- from the planner module: path operations, in order ---- */
@@ -138,7 +150,7 @@ enum trammel_operation_kind {
   TRAMMEL_RESUME = 4,
   TRAMMEL_ABORT = 5,   /* ramp on the path, then drop what is queued */
   TRAMMEL_CLEAR = 6,   /* drop what is queued at once, as after a fault */
-  TRAMMEL_SET_POSE = 7 /* the pose that LinuxCNC takes the machine to stand at; only at rest */
+  TRAMMEL_SET_POSE = 7 /* `end`: the pose that LinuxCNC takes the machine to stand at; only at rest */
 };
 
 enum { TRAMMEL_EXACT_STOP = 0, TRAMMEL_EXACT_PATH = 1, TRAMMEL_BLEND = 2 }; /* G61.1, G61, G64 P */
@@ -153,6 +165,7 @@ struct trammel_operation {
   uint32_t scale_by_feed; /* the feed override acts */
   uint32_t outputs;       /* bit n: digital output n is switched when the segment begins */
   uint32_t levels;        /* their levels */
+  uint32_t probe_away;    /* motion 5: until the probe is free, else until it touches */
   double end[TRAMMEL_POSE];
   double centre[3], normal[3];
   double speed;             /* programmed, machine units/s */

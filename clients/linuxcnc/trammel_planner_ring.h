@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: 0BSD
+ *
+ * The planner module's end of the shared memory (trammel/linuxcnc/shared_region.h): attaches it, fills the ring of path
+ * operations, reads the owner's status. No type of LinuxCNC. Functions but attach() neither wait nor allocate, and call
+ * nothing of the kernel but FUTEX_WAKE. One thread.
+ */
+#ifndef TRAMMEL_PLANNER_RING_H
+#define TRAMMEL_PLANNER_RING_H
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/futex.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "trammel/linuxcnc/shared_region.h"
+
+struct ring {
+  struct trammel_region* region;
+  uint64_t head;                /* published */
+  uint64_t written;             /* filled; those from head on are not published yet */
+  struct trammel_status status; /* last good copy */
+  uint32_t stale;               /* copies that failed */
+};
+
+/* Makes the region where it does not exist. 0, or -errno; -EBUSY: another planner module has it, or a version of the
+   layout that this module does not know. The descriptor stays open: it holds the lock. */
+static int ring_attach(struct ring* ring, const char* name) {
+  char path[128];
+  struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = TRAMMEL_LOCK_PLANNER, .l_len = 1};
+  struct stat found;
+  struct trammel_region* region;
+  int fd;
+  if (snprintf(path, sizeof path, "%s/%s%s", TRAMMEL_REGION_FOLDER, TRAMMEL_REGION_PREFIX, name) >= (int)sizeof path) {
+    return -ENAMETOOLONG;
+  }
+  fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (fd < 0) return -errno;
+  if (fstat(fd, &found) != 0) return -errno;
+  if (fcntl(fd, F_OFD_SETLK, &lock) != 0) return -EBUSY;
+  if (found.st_size < (off_t)sizeof *region && ftruncate(fd, sizeof *region) != 0) return -errno;
+  region = mmap(NULL, sizeof *region, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, fd, 0);
+  if (region == MAP_FAILED) return -errno;
+  if (region->version_owner != 0 && region->version_owner != TRAMMEL_REGION_VERSION) return -EBUSY;
+  region->version_planner = TRAMMEL_REGION_VERSION;
+  ring->region = region;
+  ring->head = ring->written = __atomic_load_n(&region->operation_head, __ATOMIC_RELAXED);
+  return 0;
+}
+
+static void ring_wake(struct ring* ring) {
+  __atomic_add_fetch(&ring->region->wake, 1, __ATOMIC_RELEASE);
+  syscall(SYS_futex, &ring->region->wake, FUTEX_WAKE, 1, NULL, NULL, 0);
+}
+
+static uint64_t ring_free(const struct ring* ring) {
+  return TRAMMEL_OPERATIONS - (ring->written - __atomic_load_n(&ring->region->operation_tail, __ATOMIC_ACQUIRE));
+}
+
+/* The next slot, zeroed; NULL where the ring is full. ring_fill() makes it one of the written ones. */
+static struct trammel_operation* ring_slot(struct ring* ring, uint32_t kind) {
+  struct trammel_operation* operation = &ring->region->operations[ring->written % TRAMMEL_OPERATIONS];
+  if (ring_free(ring) == 0) return NULL;
+  memset(operation, 0, sizeof *operation);
+  operation->kind = kind;
+  return operation;
+}
+
+static void ring_fill(struct ring* ring) { ++ring->written; }
+
+static struct trammel_operation* ring_next(struct ring* ring) {
+  return &ring->region->operations[ring->head % TRAMMEL_OPERATIONS];
+}
+
+static void ring_publish_one(struct ring* ring) {
+  __atomic_store_n(&ring->region->operation_head, ++ring->head, __ATOMIC_RELEASE);
+}
+
+/* The owner's status; the last good copy where the owner writes just now. 0, or -1 for that. */
+static int ring_read_status(struct ring* ring) {
+  const struct trammel_region* region = ring->region;
+  struct trammel_status copy;
+  int tries;
+  for (tries = 0; tries < TRAMMEL_TRIES; ++tries) {
+    const uint32_t before = __atomic_load_n(&region->status_sequence, __ATOMIC_ACQUIRE);
+    if (before & 1) continue;
+    memcpy(&copy, &region->status, sizeof copy);
+    __atomic_thread_fence(__ATOMIC_ACQUIRE);
+    if (before != __atomic_load_n(&region->status_sequence, __ATOMIC_RELAXED)) continue;
+    ring->status = copy;
+    return 0;
+  }
+  ++ring->stale;
+  return -1;
+}
+
+static void ring_write_scales(struct ring* ring, double feed, double rapid) {
+  struct trammel_region* region = ring->region;
+  __atomic_store_n(&region->path_settings_sequence, region->path_settings_sequence + 1, __ATOMIC_RELAXED);
+  __atomic_thread_fence(__ATOMIC_RELEASE);
+  ++region->path_settings.beat;
+  region->path_settings.feed_scale = feed;
+  region->path_settings.rapid_scale = rapid;
+  __atomic_store_n(&region->path_settings_sequence, region->path_settings_sequence + 1, __ATOMIC_RELEASE);
+}
+
+#endif

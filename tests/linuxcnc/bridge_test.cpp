@@ -1,0 +1,270 @@
+// The bridge on the golden model, in simulated time: LinuxCNC's targets against the card's steps, and all that stops
+// and starts a machine.
+#include "trammel/linuxcnc/bridge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "servo_bench.hpp"
+
+namespace trammel::linuxcnc {
+namespace {
+
+bool is_stopped(const ServoBench& bench) { return (bench.status().flags & TRAMMEL_STATUS_FAULT) != 0; }
+
+// Goes on until the card stands.
+void come_to_rest(ServoBench& bench, std::uint32_t flags = 0) {
+  for (int n = 0; n < 2000 && bench.card->busy(); ++n) bench.period({}, flags);
+  EXPECT_FALSE(bench.card->busy());
+}
+
+// 4,000 periods, each target within half a pulse; the clock of the model is LinuxCNC's to 50 parts in a million.
+TEST(Bridge, MeetsEveryTargetWithinHalfAPulse) {
+  for (const int drift : {0, 1, -1}) {
+    ServoBench bench;
+    bench.enable();
+    constexpr int kPeriods = 4'000;
+    for (int n = 0; n < kPeriods; ++n) {
+      bench.post(servo_sines(n, kPeriods));
+      bench.bridge->turn(std::chrono::nanoseconds(0));
+      bench.pass(kServoClocks + static_cast<std::uint64_t>(n % 20 == 0 ? drift : 0));
+    }
+    for (int n = 0; n < 20; ++n) bench.period(servo_sines(1, 1));
+    EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
+    EXPECT_GT(bench.lines.size(), 3'900U);
+    EXPECT_LE(bench.farthest(), 0.5);
+    EXPECT_GT(bench.steps.size(), 9'000U);
+    EXPECT_EQ(bench.status().late, 0U);
+    EXPECT_EQ(bench.status().missing, 0U);
+    EXPECT_GE(bench.status().ahead, 1U);
+    EXPECT_LE(bench.status().ahead, 3U);
+  }
+}
+
+TEST(Bridge, PositionsCountFromTheCardsMachineZero) {
+  ServoBench bench;
+  bench.enable();
+  for (int n = 1; n <= 100; ++n) bench.period({n * 1.0});
+  for (int n = 0; n < 10; ++n) bench.period({100});
+  for (int n = 0; n < 10; ++n) bench.period({100}, 0);
+  EXPECT_EQ(bench.status().position[0], 100);
+  EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_IDLE});
+  // A new stream begins there.
+  for (int n = 0; n < 10; ++n) bench.period({100});
+  for (int n = 1; n <= 50; ++n) bench.period({100.0 - n});
+  for (int n = 0; n < 10; ++n) bench.period({50});
+  EXPECT_EQ(bench.status().position[0], 50);
+  EXPECT_FALSE(is_stopped(bench));
+}
+
+TEST(Bridge, DisabledInMotionItRampsDownAlongItsLine) {
+  ServoBench bench;
+  bench.enable();
+  for (int n = 1; n <= 200; ++n) bench.period({n * 5.0, n * -2.0});
+  bench.period({}, 0);
+  come_to_rest(bench);
+  const std::int64_t x = bench.status().position[0];
+  EXPECT_GT(x, 1000);
+  EXPECT_LT(x, 1800);
+  EXPECT_NEAR(static_cast<double>(bench.status().position[1]), -0.4 * static_cast<double>(x), 1);
+  EXPECT_FALSE(is_stopped(bench));
+  EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_IDLE});
+}
+
+// At rest nothing is lost; in motion it is a stop.
+TEST(Bridge, AMissingPeriodAtRestIsCountedAndForgotten) {
+  ServoBench bench;
+  bench.enable();
+  bench.pass(100 * kServoClocks);
+  for (int n = 0; n < 500; ++n) bench.period({});
+  EXPECT_EQ(bench.status().missing, 1U);
+  EXPECT_FALSE(is_stopped(bench));
+  for (int n = 1; n <= 100; ++n) bench.period({n * 1.0});
+  for (int n = 0; n < 10; ++n) bench.period({100});
+  EXPECT_EQ(bench.status().position[0], 100);
+}
+
+TEST(Bridge, AMissingPeriodInMotionStopsUntilItIsCleared) {
+  ServoBench bench;
+  bench.enable();
+  for (int n = 1; n <= 200; ++n) bench.period({n * 5.0});
+  bench.pass(200 * kServoClocks);  // the owner sleeps: the card ramps down alone
+  for (int n = 0; n < 10; ++n) bench.period({1000 + n * 5.0});
+  ASSERT_TRUE(is_stopped(bench));
+  EXPECT_EQ(bench.status().cause, 11U);  // MISSING_PERIOD is bit 10
+  EXPECT_EQ(bench.status().missing, 1U);
+  const std::int64_t stands = bench.status().position[0];
+  EXPECT_GT(stands, bench.status().stop_position[0]);
+  // Neither the targets, nor the clear move it, nor both.
+  for (int n = 0; n < 50; ++n) bench.period({2000 + n * 5.0});
+  for (int n = 0; n < 50; ++n) bench.period({2000}, TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_CLEAR);
+  EXPECT_FALSE(is_stopped(bench));
+  for (int n = 0; n < 50; ++n) bench.period({2000 + n * 5.0});
+  EXPECT_EQ(bench.status().position[0], stands);
+  // Disabled and enabled where it stands, it moves.
+  const double at = static_cast<double>(stands);
+  bench.enable({at});
+  for (int n = 1; n <= 100; ++n) bench.period({at + n});
+  for (int n = 0; n < 10; ++n) bench.period({at + 100});
+  EXPECT_EQ(bench.status().position[0], stands + 100);
+}
+
+TEST(Bridge, ATargetThatIsTooFarStopsOnARampAndIsNamed) {
+  ServoBench bench;
+  bench.enable();
+  for (int n = 1; n <= 200; ++n) bench.period({n * 5.0});
+  bench.period({5000});
+  come_to_rest(bench, TRAMMEL_PERIOD_ENABLE);
+  ASSERT_TRUE(is_stopped(bench));
+  EXPECT_EQ(bench.status().cause, std::uint32_t{TRAMMEL_CAUSE_TARGET});
+  EXPECT_EQ(bench.status().refused, 1U);
+  EXPECT_THAT(std::string(bench.status().text), ::testing::HasSubstr("too fast"));
+  EXPECT_LT(bench.status().position[0], 1800);
+}
+
+// 1 % never come: the next line is longer by it, and every target that came is met.
+TEST(Bridge, DroppedPeriodsAreMadeUp) {
+  ServoBench bench;
+  bench.enable();
+  constexpr int kPeriods = 5'000;
+  int dropped = 0;
+  for (int n = 0; n < kPeriods; ++n) {
+    if (n % 100 == 50) {
+      ++bench.number;
+      ++dropped;
+      bench.bridge->turn(std::chrono::nanoseconds(0));
+      bench.pass();
+    } else {
+      bench.period(servo_sines(n, kPeriods));
+    }
+  }
+  for (int n = 0; n < 20; ++n) bench.period(servo_sines(1, 1));
+  EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
+  EXPECT_EQ(bench.status().dropped, static_cast<std::uint32_t>(dropped));
+  EXPECT_LE(bench.farthest(), bench.status().late == 0 ? 0.5 : 3);
+  EXPECT_EQ(bench.status().missing, 0U);
+}
+
+// A period comes later than the lead: the card goes on along its line, and comes back to the targets.
+TEST(Bridge, ALatePeriodIsCaughtUp) {
+  ServoBench bench;
+  bench.enable();
+  for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
+  bench.pass(2600);
+  for (int n = 201; n <= 203; ++n) bench.post({n * 2.0});
+  for (int n = 204; n <= 400; ++n) bench.period({n * 2.0});
+  for (int n = 0; n < 20; ++n) bench.period({800});
+  EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
+  EXPECT_GE(bench.status().late, 1U);
+  EXPECT_EQ(bench.status().position[0], 800);
+}
+
+// The component finds the ring full and drops periods; the card has stopped long before.
+TEST(Bridge, AFullRingStopsTheMachine) {
+  ServoBench bench;
+  bench.enable();
+  for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
+  int full = 0;
+  for (int n = 201; n <= 600; ++n) {
+    full += bench.post({n * 2.0}) ? 0 : 1;
+    bench.pass();
+  }
+  EXPECT_EQ(full, 400 - TRAMMEL_PERIODS);
+  for (int n = 601; n <= 620; ++n) bench.period({n * 2.0});
+  EXPECT_TRUE(is_stopped(bench));
+  EXPECT_EQ(bench.status().missing, 1U);
+  EXPECT_LT(bench.status().position[0], 800);
+}
+
+TEST(Bridge, CapturesTheProbesEdge) {
+  ServoBench bench;
+  bench.edges = {{9, 0, 137}};
+  bench.enable();
+  for (int n = 1; n <= 200; ++n) bench.period({n * 1.0});
+  EXPECT_EQ(bench.status().captures, 1U);
+  EXPECT_EQ(bench.status().capture_position[0], 137);
+  EXPECT_NE(bench.status().flags & TRAMMEL_STATUS_PROBE, 0U);
+}
+
+TEST(Bridge, LatchesTheIndexOfTheJointThatWaits) {
+  ServoBench bench;
+  bench.edges = {{3, 0, 250, false}};  // a switch to ground
+  bench.enable();
+  const std::uint32_t waits = TRAMMEL_PERIOD_ENABLE | 1U << TRAMMEL_PERIOD_INDEX_SHIFT;
+  for (int n = 1; n <= 200; ++n) bench.period({n * 1.0});
+  for (int n = 201; n <= 240; ++n) bench.period({n * 1.0}, waits);
+  EXPECT_EQ(bench.status().index_latched, 0U);
+  for (int n = 241; n <= 300; ++n) bench.period({n * 1.0}, waits);
+  EXPECT_EQ(bench.status().index_latched, 1U);
+  EXPECT_EQ(bench.status().index_position[0], 250);
+  for (int n = 0; n < 5; ++n) bench.period({300});
+  EXPECT_EQ(bench.status().index_latched, 0U);
+  // Joint 1 has no index input.
+  bench.period({300}, TRAMMEL_PERIOD_ENABLE | 2U << TRAMMEL_PERIOD_INDEX_SHIFT);
+  EXPECT_THAT(std::string(bench.status().text), ::testing::HasSubstr("no index input"));
+}
+
+TEST(Bridge, AnEmergencyStopStaysUntilItIsCleared) {
+  ServoBench bench;
+  bench.enable();
+  for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
+  bench.engine->set_emergency_stop(true);
+  for (int n = 201; n <= 260; ++n) bench.period({n * 2.0});
+  ASSERT_TRUE(is_stopped(bench));
+  EXPECT_EQ(bench.status().cause, 13U);  // EMERGENCY_STOP is bit 12
+  bench.period({}, 0);
+  bench.period({}, TRAMMEL_PERIOD_CLEAR);
+  EXPECT_TRUE(is_stopped(bench)) << "the button is pressed";
+  bench.engine->set_emergency_stop(false);
+  bench.period({}, 0);
+  bench.period({}, TRAMMEL_PERIOD_CLEAR);
+  EXPECT_FALSE(is_stopped(bench));
+  const std::int64_t stands = bench.status().position[0];
+  bench.enable({static_cast<double>(stands)});
+  EXPECT_EQ(bench.status().position[0], stands);
+  EXPECT_FALSE(is_stopped(bench));
+}
+
+// LinuxCNC goes on enabled: the new owner's card stands.
+TEST(Bridge, ANewOwnerMovesNothingBeforeTheMachineWasDisabled) {
+  ServoBench bench;
+  for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
+  EXPECT_EQ(bench.status().position[0], 0);
+  EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_IDLE});
+  bench.enable({});
+  bench.period({1});
+  EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_STREAMING});
+}
+
+// What comes while the card is held is done behind it; eight seconds at rest fills no queue.
+TEST(Bridge, AHoldLosesNothing) {
+  ServoBench bench;
+  bench.enable();
+  const std::uint32_t held = TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_HOLD;
+  for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
+  for (int n = 201; n <= 220; ++n) bench.period({n * 2.0}, held);
+  for (int n = 0; n < 8'000; ++n) bench.period({440}, held);
+  EXPECT_NE(bench.status().flags & TRAMMEL_STATUS_HELD, 0U);
+  EXPECT_LT(bench.status().position[0], 440);
+  for (int n = 0; n < 500; ++n) bench.period({440});
+  EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
+  EXPECT_EQ(bench.status().position[0], 440);
+}
+
+TEST(Bridge, RefusesPathsByNameWithoutAPlanner) {
+  ServoBench bench;
+  bench.enable();
+  trammel_region& memory = bench.region.memory();
+  memory.operations[0].kind = TRAMMEL_LINE;
+  memory.operations[0].id = 7;
+  memory.operation_head = 1;
+  bench.post({}, TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_PATH);
+  int turns = 0;
+  bench.bridge->run([&] { return ++turns > 5; });
+  EXPECT_EQ(bench.status().refusals, 1U);
+  EXPECT_EQ(bench.status().refusal, 7);
+  EXPECT_THAT(std::string(bench.status().text), ::testing::HasSubstr("a line was refused"));
+}
+
+}  // namespace
+}  // namespace trammel::linuxcnc

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""LinuxCNC without a screen on a simulated card, by the component `trammel`.
+
+    headless_test.py TRAMMEL MODULES [TEST ...]
+"""
+
+import os
+import signal
+import sys
+import time
+
+from bench import PERIOD, Bench, check, run_tests, stalled
+from record import Record
+
+TRAMMEL, MODULES = sys.argv[1:3]
+LEAD = 30
+
+
+def start(bench, scenario):
+    bench.configure(scenario, LEAD)
+    owner = bench.start_owner(*bench.simulated())
+    bench.start(["linuxcnc", "-r", "trammel.ini"])
+    return owner
+
+
+def near(found, place, tolerance, what):
+    check(all(abs(a - b) <= tolerance for a, b in zip(found, place)), f"{what}: {found}, not {place}")
+
+
+def judge_record(bench, result, least):
+    record = Record(bench.folder / "record")
+    print(record.judge(least, LEAD))
+    net = [record.net.get(axis, 0) for axis in range(3)]
+    check(net == result["counts"], f"the card made {net} pulses and told {result['counts']}")
+
+
+def short():
+    """Home with switches, jog, G0 to G3, G38.2, feed hold, abort, emergency stop, and on from there."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        start(bench, "short")
+        try:
+            result = bench.finish(60)
+        except RuntimeError as error:
+            return f"{error}"
+        if stalled(result, LEAD):
+            return f"the machine stalled for {max(result['longest-period'], result['longest-silence']) / 1e6:.0f} ms"
+        check(not result["errors"], f"messages: {result['errors']}")
+        check(result["underrun"] == 0 and result["refused"] == 0, f"{result}")
+        near(result["home"], (0, 0, 0), 0.013, "home")
+        near(result["jogged"], (3, 0, 0), 0.013, "jog")
+        check(result["probed"][0], "the probe did not touch")
+        # The plate is at -20; LinuxCNC sees it when the status comes, and says where the feedback was: 15 mm/s.
+        near(result["probed"][1:], (-20,), 0.2, "probe")
+        near(result["program"], (10, 10, -6), 0.013, "end of the program")
+        check(result["held"], "moved in the feed hold")
+        check(18 < result["aborted"][0] < 39, f"aborted at {result['aborted']}")
+        near(result["end"], (20, 15, -2), 0.013, "end behind the abort")
+        check(24 < result["stopped"][0] < 40, f"stopped at {result['stopped']}")
+        check(result["homed after"] == [1, 1, 1], "no longer homed after the emergency stop")
+        near(result["back"], (0, 0, 0), 0.013, "the way back")
+        judge_record(bench, result, 3000)
+        # Switches at -20 mm, -20 mm and 10 mm, which are -2, -2 and 2 of the homed machine; 2 mm/s times the lateness.
+        near([count / 80 for count in result["counts"]], (-18, -18, 8), 2 * 0.06, "zero of the homed machine")
+        for name in ("longest-read", "longest-write", "longest-period", "longest-silence"):
+            print(f"{name}: {result[name] / 1000:.0f} us")
+
+
+def dropped():
+    """One period in a hundred never comes: the next line is longer, and nothing is lost."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        start(bench, "dropped")
+        try:
+            result = bench.finish(90)
+        except RuntimeError as error:
+            return f"{error}"
+        if stalled(result, LEAD):
+            return f"the machine stalled: {result}"
+        check(result["dropped"] > 30, f"only {result['dropped']} periods were dropped")
+        check(result["underrun"] == 0 and not result["errors"], f"{result}")
+        near(result["program"], (10, 10, -6), 0.013, "end of the program")
+        judge_record(bench, result, 2000)
+        print(f"{result['dropped']} periods dropped")
+
+
+def owner_stops_briefly():
+    """The owner is stopped for 20 ms in a motion: less than what is ahead, nothing is to be seen."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        owner = start(bench, "long_move")
+        bench.wait_for("moving")
+        owner.send_signal(signal.SIGSTOP)
+        time.sleep(0.02)  # the injected fault itself
+        owner.send_signal(signal.SIGCONT)
+        result = bench.finish(60)
+        if stalled(result, LEAD) and (result["underrun"] or result["errors"]):
+            return f"the machine stalled: {result}"
+        check(result["longest-silence"] >= 20e6, "the owner was not stopped")
+        check(result["underrun"] == 0 and not result["errors"], f"{result}")
+        near(result["position"], (60, 0, 0), 0.013, "end of the move")
+        judge_record(bench, result, 1000)
+
+
+def owner_is_killed():
+    """The machine goes off, LinuxCNC tells why, nothing moves; a new owner moves nothing either."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        owner = start(bench, "killed")
+        bench.wait_for("moving")
+        owner.send_signal(signal.SIGKILL)
+        bench.wait_for("off")
+        bench.start_owner(*bench.simulated("record2"))
+        result = bench.finish(60)
+        check(any("does not answer" in error for error in result["errors"]), f"no message: {result['errors']}")
+        check(result["off"], "the machine was still on")
+        check(result["new owner"] == [0, 0, 0], f"the new owner's card moved: {result['new owner']}")
+        record = (bench.folder / "record2").read_text()
+        check("open" not in record and "step" not in record, "the new owner's card was sent something")
+
+
+def owner_is_stopped():
+    """Stopped for good: the realtime functions go on, in their usual time."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        owner = start(bench, "killed_only")
+        bench.wait_for("moving")
+        owner.send_signal(signal.SIGSTOP)
+        bench.wait_for("result.json")
+        owner.send_signal(signal.SIGCONT)
+        result = bench.finish(60)
+        check(result["off"], "the machine was still on")
+        print(f"with the owner stopped: longest-read {result['longest-read'] / 1000:.0f} us, longest-write "
+              f"{result['longest-write'] / 1000:.0f} us; before {result['read before'] / 1000:.0f} and "
+              f"{result['write before'] / 1000:.0f} us")
+
+
+os.nice(-5) if os.geteuid() == 0 else None
+named = {test.__name__: test for test in (short, dropped, owner_stops_briefly, owner_is_stopped, owner_is_killed)}
+run_tests([named[name] for name in sys.argv[3:] or named], MODULES)

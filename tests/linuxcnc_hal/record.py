@@ -1,0 +1,53 @@
+"""The record of `trammel linuxcnc --record`, judged by the closed form: behind each period every axis is at its target,
+rounded, and within a period it is on the straight line between two targets."""
+
+from bench import UNIT, check
+
+
+class Stream:
+    """From the machine's switching on until its end."""
+
+    def __init__(self, standing):
+        self.standing = standing  # pulses
+        self.lines = []           # (number, duration in ns, targets in 2^-24 pulses)
+        self.steps = []           # (clock, command, axis, direction)
+
+    def furthest(self, lead):
+        """Largest distance, in pulses, between a target and the axis when its line has ended; how many lines. Only lines
+        before the last step count: what the machine's end left in the queue has none."""
+        steps = {}
+        for _, command, axis, direction in self.steps:
+            # The stream counts its commands: behind the first lines, as many as the lead, comes one that is no line.
+            steps.setdefault(command if command < lead else command - 1, []).append((axis, direction))
+        at, most = list(self.standing), 0.0
+        whole = self.lines[:max(steps, default=0)]
+        for index, (_, _, targets) in enumerate(whole):
+            for axis, direction in steps.get(index, []):
+                at[axis] += direction
+            most = max(most, max(abs(a - t / UNIT) for a, t in zip(at, targets)))
+        return most, len(whole)
+
+
+class Record:
+    def __init__(self, path):
+        self.streams, self.net = [], {}
+        for line in open(path):
+            kind, *words = line.strip().split(",")
+            numbers = [int(word) for word in words]
+            if kind == "open":
+                self.streams.append(Stream(numbers[1:]))
+            elif kind == "line":
+                self.streams[-1].lines.append((numbers[0], numbers[1], numbers[2:]))
+            elif kind == "step":
+                self.net[numbers[2]] = self.net.get(numbers[2], 0) + numbers[3]
+                if self.streams:
+                    self.streams[-1].steps.append(tuple(numbers))
+        check(self.streams, "nothing was streamed")
+
+    def judge(self, least, lead):
+        """Every axis within half a pulse of every target, in at least so many lines. What it found, for the log."""
+        found = [stream.furthest(lead) for stream in self.streams]
+        most, lines = max(most for most, _ in found), sum(lines for _, lines in found)
+        check(lines >= least, f"{lines} lines were compared, fewer than {least}")
+        check(most <= 0.5, f"an axis was {most} pulses from its target")
+        return f"{lines} lines of {len(self.streams)} streams: at most {most:.4f} pulses from the target"
