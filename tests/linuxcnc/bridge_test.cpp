@@ -242,13 +242,13 @@ TEST(Bridge, AHoldLosesNothing) {
   bench.enable();
   const std::uint32_t held = TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_HOLD;
   for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
-  for (int n = 201; n <= 220; ++n) bench.period({n * 2.0}, held);
-  for (int n = 0; n < 8'000; ++n) bench.period({440}, held);
+  for (int n = 201; n <= 500; ++n) bench.period({n * 2.0}, held);
+  for (int n = 0; n < 8'000; ++n) bench.period({1000}, held);
   EXPECT_NE(bench.status().flags & TRAMMEL_STATUS_HELD, 0U);
-  EXPECT_LT(bench.status().position[0], 440);
-  for (int n = 0; n < 500; ++n) bench.period({440});
+  EXPECT_LT(bench.status().position[0], 1000);
+  for (int n = 0; n < 1500; ++n) bench.period({1000});
   EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
-  EXPECT_EQ(bench.status().position[0], 440);
+  EXPECT_EQ(bench.status().position[0], 1000);
 }
 
 TEST(Bridge, RefusesPathsByNameWithoutAPlanner) {

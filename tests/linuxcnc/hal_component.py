@@ -16,7 +16,7 @@ addf siggen.0.update servo
 addf trammel.0.read servo
 addf trammel.0.write servo
 setp trammel.0.lead-periods {lead}
-setp trammel.0.link-periods 300
+setp trammel.0.link-periods 150
 setp siggen.0.frequency 0
 setp siggen.0.amplitude 8
 setp siggen.0.offset -8

@@ -10,6 +10,8 @@ import linuxcnc
 
 command, status, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 result = {"errors": []}
+component = hal.component("test-ui")
+component.ready()
 
 
 def poll():
