@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The examples of docs/user/linuxcnc.md in headless LinuxCNC: homes, jogs, runs a program, probes, holds, aborts, stops.
-The card's steps equal what was commanded."""
+"""The examples of docs/user/linuxcnc.md in headless LinuxCNC: homes, jogs, runs a program, probes, holds, aborts,
+stops. The card's steps equal what was commanded."""
 
 import argparse
 import json
@@ -28,7 +28,7 @@ def main():
         ini = ini.replace("FERROR = 2.0", "FERROR = 20").replace("MIN_FERROR = 0.5", "MIN_FERROR = 20")
         (bench.folder / "trammel.ini").write_text(ini)
         with open(bench.folder / "trammel.hal", "a") as hal:
-            hal.write(f"setp trammel.0.test-drop {options.drop}\nsetp trammel.0.link-periods 200\n")
+            hal.write(f"setp trammel.0.test-drop {options.drop}\nsetp trammel.0.link-periods 1000\n")
         bench.start_owner()
         subprocess.run(["chown", "-R", "nobody", bench.folder], check=True)
         with open(bench.folder / "hal.txt", "w") as log:

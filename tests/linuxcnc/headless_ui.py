@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""LinuxCNC's user interface in the test: homes, jogs, runs a program, probes, pauses, aborts, presses the emergency stop.
-Writes what it saw to result.json."""
+"""LinuxCNC's user interface in the test: homes, jogs, runs a program, probes, pauses, aborts, presses the emergency
+stop. Writes what it saw to result.json."""
 
 import json
 import time
@@ -30,8 +30,8 @@ def wait_for(what, condition, seconds=30):
         if condition():
             return
         if time.monotonic() > end:
-            raise TimeoutError(f"{what}: state {status.task_state}, homed {status.homed[:3]}, at {status.position[:3]}, "
-                               f"errors {result['errors']}")
+            raise TimeoutError(f"{what}: state {status.task_state}, homed {status.homed[:3]}, "
+                               f"at {status.position[:3]}, errors {result['errors']}")
         time.sleep(0.005)
 
 

@@ -1,7 +1,7 @@
 """LinuxCNC's HAL in namespaces of its own, with the HAL component just built, in front of `trammel linuxcnc`.
 
-rtapi_app refuses root and loads modules from one folder alone. So root mounts a copy of that folder with the component in
-it, for this run alone, and runs all of it as `nobody`."""
+rtapi_app refuses root and loads modules from one folder alone. So root mounts a copy of that folder with the component
+in it, for this run alone, and runs all of it as `nobody`."""
 
 import os
 import pathlib
@@ -129,7 +129,7 @@ class Bench:
 
 
 class Farthest:
-    """Of a record: how far each line ended from its target, pulses; the lines of a stream that a ramp cut are left out."""
+    """Of a record: how far each line ended from its target, pulses. Lines that a ramp cut are left out."""
 
     def __init__(self, lines, lead, joints=3):
         self.pulses, self.lines, self.steps = 0.0, 0, 0
