@@ -31,7 +31,8 @@ def wait_for(what, condition, seconds=30):
             return
         if time.monotonic() > end:
             raise TimeoutError(f"{what}: state {status.task_state}, homed {status.homed[:3]}, "
-                               f"at {status.position[:3]}, errors {result['errors']}")
+                               f"at {status.position[:3]}, ready {pin('ready')}, link {pin('link-ok')}, "
+                               f"errors {result['errors']}")
         time.sleep(0.005)
 
 
@@ -52,8 +53,14 @@ def power_on():
 
 
 def mode(wanted):
-    command.mode(wanted)
-    command.wait_complete()
+    """LinuxCNC ignores it while it takes a jog to go on."""
+    def is_in_it():
+        if status.task_mode != wanted:
+            command.mode(wanted)
+            command.wait_complete()
+            poll()
+        return status.task_mode == wanted
+    wait_for("mode", is_in_it)
 
 
 def mdi(line):

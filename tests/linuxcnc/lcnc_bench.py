@@ -65,8 +65,8 @@ class Bench:
         self.owners += 1
         self.record = self.folder / f"record-{self.owners}.csv"
         self.notes = self.folder / f"owner-{self.owners}.txt"
-        arguments = [self.trammel, "linuxcnc", "--name", self.name, "--engine", "model", "--machine", "machine.toml",
-                     "--world", "world.toml", "--record", self.record, *options]
+        arguments = [self.trammel, "linuxcnc", "--name", self.name, "--clock", "10000000", "--machine",
+                     "machine.toml", "--world", "world.toml", "--record", self.record, *options]
         output = open(self.notes, "w")
         self.owner = subprocess.Popen(self.as_nobody(arguments), cwd=self.folder, env=self.environment(), stdout=output,
                                       stderr=subprocess.STDOUT)
@@ -90,8 +90,8 @@ class Bench:
     def start_hal(self, file):
         """halrun, with halcmd's commands on its standard input from then on."""
         log = open(self.folder / "hal.txt", "w")
-        self.hal = subprocess.Popen(self.isolated(["halrun", "-k", "-I", file]), cwd=self.folder, env=self.environment(),
-                                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True, bufsize=1)
+        self.hal = subprocess.Popen(self.isolated(["halrun", "-k", "-I", file]), cwd=self.folder,
+                                    env=self.environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True, bufsize=1)
 
     def get(self, pin):
         self.hal.stdin.write(f"getp {pin}\n")
