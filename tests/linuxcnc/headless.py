@@ -41,7 +41,9 @@ def main():
         print(f"{found.lines} lines, {found.steps} steps, farthest from a target {found.pulses:.4f} pulses")
         assert result.get("passed"), result.get("failed")
         assert max(abs(a - b) for a, b in zip(result["end"], (0, 0, 5))) < 1e-6, result["end"]
-        assert abs(result["captured"] - result["probed"]) < 0.1, (result["captured"], result["probed"])
+        # The card's capture is the motor's position, off by what homing has set (the switch's way back, 0.1 mm), and
+        # LinuxCNC saw the edge some periods later.
+        assert abs(result["captured"] - result["probed"]) < 0.4, (result["captured"], result["probed"])
         assert 0 < result["aborted"] < 60, result["aborted"]
         assert all(result["homed_behind_stop"])
         if result["late"] == 0:

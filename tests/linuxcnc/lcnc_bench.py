@@ -91,7 +91,8 @@ class Bench:
         """halrun, with halcmd's commands on its standard input from then on."""
         log = open(self.folder / "hal.txt", "w")
         self.hal = subprocess.Popen(self.isolated(["halrun", "-k", "-I", file]), cwd=self.folder,
-                                    env=self.environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True, bufsize=1)
+                                    env=self.environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                    stderr=log, text=True, bufsize=1)
 
     def get(self, pin):
         self.hal.stdin.write(f"getp {pin}\n")
@@ -153,7 +154,7 @@ class Farthest:
         last = steps[-1][1] if steps else 0
         for number, targets in enumerate(stream["lines"]):
             command = number if number < lead else number + 1  # the FEED has a number too
-            if command > last:
+            if command >= last:  # of the last one that moved, a ramp's steps have the same number
                 break
             while next_step < len(steps) and steps[next_step][1] <= command:
                 _, _, axis, direction = steps[next_step]
