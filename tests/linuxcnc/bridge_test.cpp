@@ -99,7 +99,9 @@ TEST(Bridge, AMissingPeriodInMotionStopsUntilItIsCleared) {
   for (int n = 0; n < 50; ++n) bench.period({2000 + n * 5.0});
   for (int n = 0; n < 50; ++n) bench.period({2000}, TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_CLEAR);
   EXPECT_FALSE(is_stopped(bench));
-  for (int n = 0; n < 50; ++n) bench.period({2000 + n * 5.0});
+  // Longer than the time base takes to come back.
+  for (int n = 0; n < 600; ++n) bench.period({2000 + n * 5.0});
+  EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
   EXPECT_EQ(bench.status().position[0], stands);
   // Disabled and enabled where it stands, it moves.
   const double at = static_cast<double>(stands);
@@ -180,7 +182,7 @@ TEST(Bridge, CapturesTheProbesEdge) {
   ServoBench bench;
   bench.edges = {{9, 0, 137}};
   bench.enable();
-  for (int n = 1; n <= 200; ++n) bench.period({n * 1.0});
+  for (int n = 1; n <= 100; ++n) bench.period({n * 6.0});
   EXPECT_EQ(bench.status().captures, 1U);
   EXPECT_EQ(bench.status().capture_position[0], 137);
   EXPECT_NE(bench.status().flags & TRAMMEL_STATUS_PROBE, 0U);
