@@ -224,7 +224,7 @@ int tpSetSpindleSync(TP_STRUCT* const tp, int spindle, double sync, int mode) {
 
 EXTRA_SETUP() {
   const char* name = getenv("TRAMMEL_LINUXCNC");
-  const int error = ring_attach(&ring, name != NULL && name[0] != '\0' ? name : "card");
+  const int error = ring_attach(&ring, name != NULL && name[0] != '\0' ? name : "0");
   (void)__comp_inst, (void)prefix, (void)extra_arg;
   if (error == -EBUSY) {
     rtapi_print_msg(RTAPI_MSG_ERR, "trammel_planner: the shared memory is in use by another planner module, or of "
