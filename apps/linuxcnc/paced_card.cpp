@@ -11,7 +11,8 @@
 namespace trammel::app {
 namespace {
 
-constexpr std::uint64_t kLongestCatchUp = 20;  // of a second: what is more than a 20th late is left out
+// Seconds: a process that was stopped for longer finds its card as it was so long after the stop.
+constexpr std::uint64_t kLongestCatchUp = 2;
 
 sim::SimulationOptions paced_engine(const LocalCardChoice& choice, unsigned axes) {
   sim::SimulationOptions options;
@@ -41,7 +42,7 @@ void PacedCard::catch_up() {
   const std::uint64_t due = driver::clocks_of(passed, clock_hz_, "time of the simulated card") - skipped_;
   if (due <= engine_->cycles()) return;
   const std::uint64_t late = due - engine_->cycles();
-  const std::uint64_t made = std::min(late, clock_hz_ / kLongestCatchUp);
+  const std::uint64_t made = std::min(late, clock_hz_ * kLongestCatchUp);
   skipped_ += late - made;
   engine_->wait(made);
 }

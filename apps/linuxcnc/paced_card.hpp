@@ -1,6 +1,7 @@
 // A simulated card of this process that keeps to the host's time, in the caller's thread: before each access, and in
 // each sleep, its clocks run up to now. Cheaper than a served card, whose every transfer is a round trip between
-// threads: a kilohertz leaves no time for these. Where the host cannot keep up, the card's time falls behind.
+// threads: a kilohertz leaves no time for these. A process that was stopped finds the card
+// as a real one would be by then.
 #pragma once
 
 #include <chrono>

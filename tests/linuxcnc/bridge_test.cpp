@@ -99,7 +99,9 @@ TEST(Bridge, AMissingPeriodInMotionStopsUntilItIsCleared) {
   for (int n = 0; n < 50; ++n) bench.period({2000 + n * 5.0});
   for (int n = 0; n < 50; ++n) bench.period({2000}, TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_CLEAR);
   EXPECT_FALSE(is_stopped(bench));
-  for (int n = 0; n < 50; ++n) bench.period({2000 + n * 5.0});
+  // Longer than the time base takes to come back.
+  for (int n = 0; n < 600; ++n) bench.period({2000 + n * 5.0});
+  EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
   EXPECT_EQ(bench.status().position[0], stands);
   // Disabled and enabled where it stands, it moves.
   const double at = static_cast<double>(stands);
@@ -180,9 +182,10 @@ TEST(Bridge, CapturesTheProbesEdge) {
   ServoBench bench;
   bench.edges = {{9, 0, 137}};
   bench.enable();
-  for (int n = 1; n <= 200; ++n) bench.period({n * 1.0});
+  for (int n = 1; n <= 100; ++n) bench.period({n * 6.0});
   EXPECT_EQ(bench.status().captures, 1U);
-  EXPECT_EQ(bench.status().capture_position[0], 137);
+  EXPECT_EQ(bench.status().capture_position[0], bench.met);
+  EXPECT_NEAR(static_cast<double>(*bench.met), 137, 5);
   EXPECT_NE(bench.status().flags & TRAMMEL_STATUS_PROBE, 0U);
 }
 
@@ -242,13 +245,13 @@ TEST(Bridge, AHoldLosesNothing) {
   bench.enable();
   const std::uint32_t held = TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_HOLD;
   for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
-  for (int n = 201; n <= 220; ++n) bench.period({n * 2.0}, held);
-  for (int n = 0; n < 8'000; ++n) bench.period({440}, held);
+  for (int n = 201; n <= 500; ++n) bench.period({n * 2.0}, held);
+  for (int n = 0; n < 8'000; ++n) bench.period({1000}, held);
   EXPECT_NE(bench.status().flags & TRAMMEL_STATUS_HELD, 0U);
-  EXPECT_LT(bench.status().position[0], 440);
-  for (int n = 0; n < 500; ++n) bench.period({440});
+  EXPECT_LT(bench.status().position[0], 1000);
+  for (int n = 0; n < 1500; ++n) bench.period({1000});
   EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
-  EXPECT_EQ(bench.status().position[0], 440);
+  EXPECT_EQ(bench.status().position[0], 1000);
 }
 
 TEST(Bridge, RefusesPathsByNameWithoutAPlanner) {

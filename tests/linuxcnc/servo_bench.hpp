@@ -89,7 +89,9 @@ class ServoBench : public driver::StepSink, public ServoRecord {
     while (engine->cycles() < due) {
       engine->wait(std::min<std::uint64_t>(10, due - engine->cycles()));
       for (const ServoEdge& edge : edges) {
-        engine->set_input(edge.input, (engine->positions()[edge.axis] >= edge.pulse) == edge.level);
+        const std::int64_t at = engine->positions()[edge.axis];
+        if (at >= edge.pulse && !met) met = at;  // while the bridge uses the card, inputs stay as they are
+        engine->set_input(edge.input, (at >= edge.pulse) == edge.level);
       }
     }
   }
@@ -151,6 +153,7 @@ class ServoBench : public driver::StepSink, public ServoRecord {
   std::unique_ptr<PathSide> paths;
   std::optional<Bridge> bridge;
   std::vector<ServoEdge> edges;
+  std::optional<std::int64_t> met;  // the pulse at which the first edge came
   std::vector<std::string> notes;
   std::uint64_t number = 0;
   std::uint64_t due = 0;

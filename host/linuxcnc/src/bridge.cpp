@@ -15,7 +15,8 @@ namespace {
 
 namespace field = card_map::field;
 
-constexpr unsigned kMostPeriods = TRAMMEL_PERIODS;  // of a turn: what the ring holds
+// Of a turn. Behind a stall many stand in the ring, and the status must go on meanwhile.
+constexpr unsigned kMostPeriods = 8;
 
 std::uint32_t cause_of(std::uint32_t faults) {
   return faults == 0 ? 0 : static_cast<std::uint32_t>(__builtin_ctz(faults)) + 1;
