@@ -99,7 +99,7 @@ class Bench:
         return owner
 
     def simulated(self, record="record"):
-        return ["--engine", "model", "--clock", "10000000", "--world", "world.toml", "--record", record]
+        return ["--engine", "model", "--clock", "1000000", "--world", "world.toml", "--record", record]
 
     def start(self, arguments):
         """halrun or linuxcnc, as the first process of its namespace: all of it ends with it."""
