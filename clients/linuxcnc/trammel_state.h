@@ -11,7 +11,7 @@
 #include "trammel_pins.h"
 
 enum {
-  LINK_PERIODS = 100,       /* without a new beat before link-ok falls; parameter link-periods */
+  LINK_PERIODS = 250,       /* without a new beat before link-ok falls; parameter link-periods */
   FAULT_WATCHDOG = 1 << 14, /* in trammel_status.fault, as in the register map */
   LEVEL_UP = 2,             /* packet-error-level, as hostmot2 counts it */
   LEVEL_MOST = 10

@@ -99,7 +99,7 @@ class Bench:
         return owner
 
     def simulated(self, record="record"):
-        return ["--engine", "model", "--clock", "10000000", "--world", "world.toml", "--record", record]
+        return ["--engine", "model", "--clock", "1000000", "--world", "world.toml", "--record", record]
 
     def start(self, arguments):
         """halrun or linuxcnc, as the first process of its namespace: all of it ends with it."""
@@ -122,7 +122,7 @@ class Bench:
 
     def finish(self, seconds=120):
         """Waits for LinuxCNC, then ends the owner in order; what the test inside saw."""
-        self.process.wait(seconds)
+        wait_until(lambda: self.process.poll() is not None, seconds, "the end of LinuxCNC")
         self.end_owner()
         if not (self.folder / "result.json").exists():
             raise RuntimeError("LinuxCNC ended without a result")

@@ -39,7 +39,7 @@ def short():
     with Bench(TRAMMEL, MODULES) as bench:
         start(bench, "short")
         try:
-            result = bench.finish(60)
+            result = bench.finish(50)
         except RuntimeError as error:
             return f"{error}"
         if stalled(result, LEAD):

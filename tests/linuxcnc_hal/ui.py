@@ -72,7 +72,7 @@ def home():
     command.teleop_enable(0)
     command.wait_complete()
     command.home(-1)
-    until(lambda: stat.homed[:3] == (1, 1, 1), 60, "homed")
+    until(lambda: stat.homed[:3] == (1, 1, 1), 25, "homed")
     wait_idle()
     standing()
     result["home"] = position()

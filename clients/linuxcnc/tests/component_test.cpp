@@ -226,7 +226,7 @@ TEST_F(Component, CommandThatIsNoNumberStopsItsJoint) {
 
 TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
   switch_on();
-  periods(100, false);
+  periods(250, false);
   EXPECT_TRUE(stub::bit("trammel.link-ok"));
   EXPECT_TRUE(stub::bit("trammel.packet-error"));
   periods(1, false);
@@ -234,7 +234,7 @@ TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
   EXPECT_TRUE(stub::bit("trammel.fault"));
   EXPECT_EQ(stub::s32("trammel.packet-error-level"), 10);
   EXPECT_NE(std::string(stub::messages()).find("does not answer"), std::string::npos);
-  periods(100, false);
+  periods(250, false);
   periods_.clear();
   periods(10);  // the owner is there again
   EXPECT_TRUE(stub::bit("trammel.link-ok"));
@@ -251,7 +251,7 @@ TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
 
 TEST_F(Component, PeriodsThatComeAtOnceLoseNoLink) {
   switch_on();
-  for (int n = 0; n < 200; ++n) {
+  for (int n = 0; n < 600; ++n) {
     stub::now += 20'000;
     stub::call("trammel.read", kPeriod);
     stub::call("trammel.write", kPeriod);
