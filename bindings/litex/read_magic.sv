@@ -74,8 +74,8 @@ module read_magic;
     repeat (400) @(posedge clk);
     read(32'h3000_0000, 32'h5452_4D4C);  // MAGIC
     read(32'h3000_000C, 32'd80_000_000);  // CLOCK_HZ
-    write(32'h3000_0200, 32'd123);  // STEP_LENGTH of axis 0
-    read(32'h3000_0200, 32'd123);
+    write(32'h3000_0000 + 32'(card_map_pkg::ADDR_STEP_LENGTH), 32'd123);  // of axis 0
+    read(32'h3000_0000 + 32'(card_map_pkg::ADDR_STEP_LENGTH), 32'd123);
     if (good) $display("all as expected");
     $finish;
   end

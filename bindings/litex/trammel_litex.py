@@ -54,5 +54,6 @@ class TrammelCard(LiteXModule):
             i_input_i=self.inputs, o_output_o=self.outputs, o_step_o=self.step, o_dir_o=self.dir, o_irq_o=self.irq,
             # Ports that this card is built without.
             i_awvalid_i=0, i_awaddr_i=C(0, 12), i_wvalid_i=0, i_wdata_i=C(0, 32), i_wstrb_i=C(0, 4), i_bready_i=0,
-            i_arvalid_i=0, i_araddr_i=C(0, 12), i_rready_i=0, i_rx_i=1, i_spi_i=C(2, 3),
+            i_arvalid_i=0, i_araddr_i=C(0, 12), i_rready_i=0, i_rx_i=1,
+            i_sck_i=0, i_cs_n_i=1, i_mosi_i=0,
         )
