@@ -61,8 +61,8 @@ class Bench:
         milliseconds: more periods ahead, and room for the following error that this makes."""
         ini = (EXAMPLE / "trammel.ini").read_text()
         for old, new in {"DISPLAY = axis": "DISPLAY = ./ui.py", "NAME = 0": f"NAME = {self.name}",
-                         "LEAD_PERIODS = 4": f"LEAD_PERIODS = {lead}", "\nFERROR = 2": "\nFERROR = 20",
-                         "MIN_FERROR = 1": "MIN_FERROR = 20", "SERVO_PERIOD = 1000000": f"SERVO_PERIOD = {PERIOD}"}.items():
+                         "LEAD_PERIODS = 40": f"LEAD_PERIODS = {lead}", "\nFERROR = 8": "\nFERROR = 20",
+                         "MIN_FERROR = 4": "MIN_FERROR = 20", "SERVO_PERIOD = 1000000": f"SERVO_PERIOD = {PERIOD}"}.items():
             check(old in ini, f"trammel.ini has no {old!r}")
             ini = ini.replace(old, new)
         self.write("trammel.ini", ini)
