@@ -153,6 +153,15 @@ def requirements(modules):
     return ""
 
 
+def forbidden():
+    """What this system does not allow even root; empty where it allows all that is needed."""
+    for command in (["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--mount-proc", "true"],
+                    ["chrt", "--fifo", "1", "true"]):
+        if subprocess.run(command, capture_output=True).returncode != 0:
+            return f"this system does not allow {' '.join(command)}"
+    return ""
+
+
 def stalled(result, lead):
     """Whether LinuxCNC's thread or the owner paused for longer than the periods ahead last, as measured."""
     longest = max(result["longest-period"], result["longest-silence"])
@@ -165,6 +174,7 @@ def run_tests(tests, modules):
     reason = requirements(modules)
     if reason and os.environ.get("TRAMMEL_REQUIRE_LINUXCNC"):
         sys.exit(f"error: {reason}")
+    reason = reason or forbidden()
     if reason:
         print(f"skipped: {reason}")
         sys.exit(SKIPPED)

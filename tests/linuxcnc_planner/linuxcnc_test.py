@@ -210,6 +210,10 @@ def main():
     if os.geteuid() != 0:
         print("needs root, for namespaces of its own")
         return 77
+    namespaces = ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--mount-proc", "true"]
+    if subprocess.run(namespaces, capture_output=True).returncode != 0:
+        print(f"this system does not allow {' '.join(namespaces)}")
+        return 77
     names = sys.argv[4:]
     tests = [test for test in SHORT + LONG if test.__name__ in names] if names else \
         SHORT + (LONG if os.environ.get("TRAMMEL_LONG") else ())
