@@ -86,7 +86,7 @@ void warn_of_network(const GrblOptions& options) {
 }
 
 // Until a signal, or with --once until the last client has gone and the machine stands.
-void serve_senders(const GrblOptions& options, driver::Card& card, grbl::AttentiveBus& bus,
+void serve_senders(const GrblOptions& options, driver::Card& card, run::AttentiveBus& bus,
                    const machine::Machine& machine) {
   const std::unique_ptr<transport::Listener> listener = open_listener(options);
   warn_of_network(options);
@@ -124,7 +124,7 @@ void serve_on(const GrblOptions& options, const transport::CardUrl& url, const m
   with_card(url, Purpose::kMove, [&](driver::Card& first, transport::Connection& connection) {
     require_axes(first, machine);
     if (options.card.text) take_over(first, options.card, machine);
-    grbl::AttentiveBus bus(connection.bus());
+    run::AttentiveBus bus(connection.bus(), grbl::CardMachine::kLongestSleep);
     driver::Card card = driver::Card::open(bus);
     end_grbl_at_signals();
     serve_senders(options, card, bus, machine);

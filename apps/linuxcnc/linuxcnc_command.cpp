@@ -46,7 +46,7 @@ void end_linuxcnc_at_signals() {
 }
 
 std::unique_ptr<linuxcnc::PathSide> path_side(const LinuxcncOptions& options, linuxcnc::Region& region,
-                                              driver::Card& card, linuxcnc::PathBus& bus,
+                                              driver::Card& card, run::AttentiveBus& bus,
                                               const machine::Machine& machine) {
   const auto units = options.units == "mm" ? linuxcnc::PathUnits::kMillimetres : linuxcnc::PathUnits::kInches;
   try {
@@ -64,7 +64,7 @@ void tell_counts(const trammel_status& status) {
 
 void serve_linuxcnc(const LinuxcncOptions& options, linuxcnc::Region& region, driver::Bus& card_bus,
                     const machine::Machine& machine, MotionRecord* record) {
-  linuxcnc::PathBus bus(card_bus);
+  run::AttentiveBus bus(card_bus, linuxcnc::kServoPeriod);
   driver::Card card = driver::Card::open(bus);
   const auto path = path_side(options, region, card, bus, machine);
   linuxcnc::BridgeOptions bridge_options;

@@ -76,7 +76,7 @@ std::unique_ptr<panel::PanelServer> open_panel(const panel::ServerSettings& addr
 }
 
 // Until a signal.
-void serve_page(const PanelOptions& options, driver::Card& card, grbl::AttentiveBus& bus,
+void serve_page(const PanelOptions& options, driver::Card& card, run::AttentiveBus& bus,
                 const machine::Machine& machine) {
   const panel::ServerSettings address = panel_address(options);
   warn_of_panel_network(address.host);
@@ -101,7 +101,7 @@ void serve_panel_on(const PanelOptions& options, const transport::CardUrl& url, 
   with_card(url, Purpose::kMove, [&](driver::Card& first, transport::Connection& connection) {
     require_axes(first, machine);
     if (options.card.text) take_over(first, options.card, machine);
-    grbl::AttentiveBus bus(connection.bus());
+    run::AttentiveBus bus(connection.bus(), grbl::CardMachine::kLongestSleep);
     driver::Card card = driver::Card::open(bus);
     end_panel_at_signals();
     serve_page(options, card, bus, machine);

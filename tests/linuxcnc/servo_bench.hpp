@@ -54,7 +54,7 @@ class ServoBench : public driver::StepSink, public ServoRecord {
   using Targets = std::array<double, card_map::kMaxAxes>;  // pulses
 
   explicit ServoBench(const std::string& name = "test")
-      : engine(sim::make_model_engine(model_options())), region(name, folder.path), bus(*engine) {
+      : engine(sim::make_model_engine(model_options())), region(name, folder.path), bus(*engine, kServoPeriod) {
     engine->set_sink(this);
     for (unsigned input = 0; input < sim::kInputs; ++input) engine->set_input(input, false);
     card.emplace(driver::Card::open(bus));
@@ -148,7 +148,7 @@ class ServoBench : public driver::StepSink, public ServoRecord {
   RegionFolder folder;
   std::unique_ptr<sim::Engine> engine;
   Region region;
-  PathBus bus;
+  run::AttentiveBus bus;
   std::optional<driver::Card> card;
   std::unique_ptr<PathSide> paths;
   std::optional<Bridge> bridge;

@@ -117,7 +117,7 @@ class PathBench {
   std::unique_ptr<trammel_region> region = std::make_unique<trammel_region>();
   std::unique_ptr<sim::Engine> engine = sim::make_model_engine(sim::EngineOptions{4, kPathClock, false});
   sim::TimedBus bus{*engine, kPathClock, 1e9};
-  PathBus path_bus{bus};
+  run::AttentiveBus path_bus{bus, kServoPeriod};
   driver::Card card = driver::Card::open(path_bus);
   PathServer server;
   test::Steps steps;

@@ -121,7 +121,7 @@ int run(const std::string& name, const std::string& log, double surface) {
   test::Steps steps;
   engine->set_sink(&steps);
   PacedBus paced(*engine, surface);
-  PathBus bus(paced);
+  run::AttentiveBus bus(paced, linuxcnc::kServoPeriod);
   driver::Card card = driver::Card::open(bus);
   machine::Machine machine = machine::default_machine();
   machine.probe.input = kProbeInput;

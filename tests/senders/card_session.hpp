@@ -109,7 +109,7 @@ class CardSession {
   }
 
   std::unique_ptr<sim::Engine> engine_;
-  grbl::AttentiveBus bus_{*engine_};
+  run::AttentiveBus bus_{*engine_, grbl::CardMachine::kLongestSleep};
 
  public:
   driver::Card card{driver::Card::open(bus_)};

@@ -17,10 +17,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::nanoseconds kSlice = 5ms;  // a real-time command waits no longer
-constexpr auto kFresh = 20ms;                     // a look at the position serves for so long
-constexpr auto kInputsFresh = 100ms;              // and one at the inputs
-constexpr double kSpeedTime = 0.04;               // s of the card, over which a speed is measured
+constexpr auto kFresh = 20ms;         // a look at the position serves for so long
+constexpr auto kInputsFresh = 100ms;  // and one at the inputs
+constexpr double kSpeedTime = 0.04;   // s of the card, over which a speed is measured
 // Blocks that the planner waits for before it sends any: as many as twice Grbl's planner holds.
 constexpr double kWindow = 32;
 constexpr double kMinute = 60;
@@ -39,24 +38,7 @@ class BorrowedLines final : public gcode::LineSource {
 
 }  // namespace
 
-void AttentiveBus::sleep(std::chrono::nanoseconds time) {
-  do {
-    const std::chrono::nanoseconds part = std::min(time, kSlice);
-    bus_.sleep(part);
-    time -= part;
-    if (!meanwhile_ || inside_) continue;
-    inside_ = true;
-    try {
-      meanwhile_();
-    } catch (...) {
-      inside_ = false;
-      throw;
-    }
-    inside_ = false;
-  } while (time > 0ns);
-}
-
-CardMachine::CardMachine(driver::Card& card, AttentiveBus& bus, const machine::Machine& machine, bool trust)
+CardMachine::CardMachine(driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine, bool trust)
     : card_(card), bus_(bus), machine_(machine), limited_(machine) {
   set_up(trust);
   for (const auto piece_class : {driver::PieceClass::kFeed, driver::PieceClass::kRapid, driver::PieceClass::kFixed}) {
@@ -177,7 +159,7 @@ void CardMachine::set_meanwhile(std::function<void()> meanwhile) {
 // While a motion waits for lines nobody else serves the card's watchdog.
 void CardMachine::wait() {
   if (moving_) driver::serve_requests(card_);
-  bus_.sleep(kSlice);
+  bus_.sleep(kLongestSleep);
 }
 
 void CardMachine::hold(bool hold) {

@@ -24,8 +24,8 @@ std::uint32_t cause_of(std::uint32_t faults) {
 
 }  // namespace
 
-Bridge::Bridge(Region& region, driver::Card& card, PathBus& bus, const machine::Machine& machine, PathSide& path,
-               BridgeOptions options)
+Bridge::Bridge(Region& region, driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine,
+               PathSide& path, BridgeOptions options)
     : region_(region),
       card_(card),
       bus_(bus),

@@ -64,8 +64,8 @@ void copy_text(char (&to)[128], const std::string& text) {
 
 }  // namespace
 
-PathServer::PathServer(trammel_region& region, driver::Card& card, PathBus& bus, const machine::Machine& machine,
-                       PathUnits units)
+PathServer::PathServer(trammel_region& region, driver::Card& card, run::AttentiveBus& bus,
+                       const machine::Machine& machine, PathUnits units)
     : region_(region), card_(card), bus_(bus), units_(units), machine_(without_limits(machine)), queue_(region) {
   report_.operations_done = queue_.done();
   position_ = std::make_unique<run::MachinePosition>(card_.read_snapshot(), machine_);
@@ -81,7 +81,7 @@ void PathServer::set_machine(const machine::Machine& machine) {
 void PathServer::serve(const std::function<bool()>& meanwhile) {
   struct NoLonger {
     ~NoLonger() { bus.set_meanwhile({}); }
-    PathBus& bus;
+    run::AttentiveBus& bus;
   };
   meanwhile_ = &meanwhile;
   ending_ = false;

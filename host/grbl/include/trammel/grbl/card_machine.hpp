@@ -9,35 +9,21 @@
 
 #include "trammel/driver/card.hpp"
 #include "trammel/grbl/machine_side.hpp"
+#include "trammel/run/attentive_bus.hpp"
 #include "trammel/run/card_place.hpp"
 #include "trammel/run/machine_position.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace trammel::grbl {
 
-// A bus whose sleeps are short, and call a function after each.
-class AttentiveBus final : public driver::Bus {
- public:
-  // `bus` must outlive it.
-  explicit AttentiveBus(driver::Bus& bus) : bus_(bus) {}
-  void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
-
-  std::size_t transfer(driver::Access* accesses, std::size_t count) override { return bus_.transfer(accesses, count); }
-  void sleep(std::chrono::nanoseconds time) override;
-  bool reports_refusals() const override { return bus_.reports_refusals(); }
-  std::string hold_origin() const override { return bus_.hold_origin(); }
-
- private:
-  driver::Bus& bus_;
-  std::function<void()> meanwhile_;
-  bool inside_ = false;  // of `meanwhile_`
-};
-
 class CardMachine final : public MachineSide, private run::Observer {
  public:
+  // Longest sleep of the bus: a real-time command waits no longer.
+  static constexpr std::chrono::nanoseconds kLongestSleep = std::chrono::milliseconds(5);
+
   // `card` is open on `bus` and stands; both must outlive it. `trust`: a place that was lost is taken for the
   // machine's. Throws driver::Error, and driver::ArgumentError for a machine that the card cannot drive.
-  CardMachine(driver::Card& card, AttentiveBus& bus, const machine::Machine& machine, bool trust);
+  CardMachine(driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine, bool trust);
 
   const machine::Machine& machine() const override { return limited_; }
   planner::CardLimits limits() const override;
@@ -75,7 +61,7 @@ class CardMachine final : public MachineSide, private run::Observer {
   std::vector<std::size_t> axes_with_switches() const;
 
   driver::Card& card_;
-  AttentiveBus& bus_;
+  run::AttentiveBus& bus_;
   machine::Machine machine_;
   machine::Machine limited_;  // with the soft limits of homed axes alone, and a window for a sender
   std::string lost_;          // why the place is not known; empty where it is

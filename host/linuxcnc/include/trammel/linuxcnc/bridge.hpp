@@ -18,11 +18,11 @@
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/watchdog_scope.hpp"
 #include "trammel/linuxcnc/card_look.hpp"
-#include "trammel/linuxcnc/path_bus.hpp"
 #include "trammel/linuxcnc/path_side.hpp"
 #include "trammel/linuxcnc/region.hpp"
 #include "trammel/linuxcnc/servo_stream.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/attentive_bus.hpp"
 
 namespace trammel::linuxcnc {
 
@@ -37,7 +37,7 @@ class Bridge {
 
   // Sets the card up by the machine file, and gives it a place where it has none. `card` is open on `bus`, stands, and
   // is not faulted; all must outlive the bridge. Throws driver::Error.
-  Bridge(Region& region, driver::Card& card, PathBus& bus, const machine::Machine& machine, PathSide& path,
+  Bridge(Region& region, driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine, PathSide& path,
          BridgeOptions options = {});
 
   // Turns until `ended` is true; the card stands then. Throws driver::LinkError; TimeoutError where it does not stand.
@@ -74,7 +74,7 @@ class Bridge {
 
   Region& region_;
   driver::Card& card_;
-  PathBus& bus_;
+  run::AttentiveBus& bus_;
   const machine::Machine machine_;
   PathSide& path_;
   BridgeOptions options_;

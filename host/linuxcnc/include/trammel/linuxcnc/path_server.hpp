@@ -18,10 +18,10 @@
 #include <string>
 
 #include "trammel/driver/card.hpp"
-#include "trammel/linuxcnc/path_bus.hpp"
 #include "trammel/linuxcnc/path_line.hpp"
 #include "trammel/linuxcnc/path_queue.hpp"
 #include "trammel/linuxcnc/path_side.hpp"
+#include "trammel/run/attentive_bus.hpp"
 #include "trammel/run/machine_position.hpp"
 #include "trammel/run/runner.hpp"
 
@@ -34,7 +34,7 @@ class PathServer final : public PathSide {
  public:
   // `card` is open on `bus` and stands; region, card and bus must outlive it. Throws std::invalid_argument for a
   // machine whose kinematics are not cartesian: LinuxCNC's trivkins is all that the planner module takes.
-  PathServer(trammel_region& region, driver::Card& card, PathBus& bus, const machine::Machine& machine,
+  PathServer(trammel_region& region, driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine,
              PathUnits units);
   ~PathServer() override;
 
@@ -76,7 +76,7 @@ class PathServer final : public PathSide {
 
   trammel_region& region_;
   driver::Card& card_;
-  PathBus& bus_;
+  run::AttentiveBus& bus_;
   PathUnits units_;
   machine::Machine machine_;
   PathQueue queue_;

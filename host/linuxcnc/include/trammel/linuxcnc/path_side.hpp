@@ -2,11 +2,15 @@
 // come from the thread that uses the card.
 #pragma once
 
+#include <chrono>
 #include <functional>
 
 #include "trammel/linuxcnc/shared_region.h"
 
 namespace trammel::linuxcnc {
+
+// LinuxCNC's, as a rule: the bus below a PathSide sleeps no longer without a look at the shared memory.
+inline constexpr std::chrono::nanoseconds kServoPeriod = std::chrono::milliseconds(1);
 
 class PathSide {
  public:

@@ -1,5 +1,5 @@
-// A bus whose sleeps are short and call a function after each: so one thread serves LinuxCNC's memory while a run of
-// the planner waits for the card. Not thread-safe.
+// A bus whose sleeps are short and call a function after each: so one thread serves others while a run waits for the
+// card. Not thread-safe.
 #pragma once
 
 #include <chrono>
@@ -10,13 +10,13 @@
 
 #include "trammel/driver/bus.hpp"
 
-namespace trammel::linuxcnc {
+namespace trammel::run {
 
-class PathBus final : public driver::Bus {
+class AttentiveBus final : public driver::Bus {
  public:
-  // `bus` must outlive it.
-  explicit PathBus(driver::Bus& bus) : bus_(bus) {}
-  // Called after each sleep of at most a millisecond, never from within itself. What it throws passes through sleep().
+  // `bus` must outlive it. `longest`: of a sleep before the function is called, above 0.
+  AttentiveBus(driver::Bus& bus, std::chrono::nanoseconds longest) : bus_(bus), longest_(longest) {}
+  // Called after each sleep, never from within itself. What it throws passes through sleep().
   void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
 
   std::size_t transfer(driver::Access* accesses, std::size_t count) override { return bus_.transfer(accesses, count); }
@@ -26,8 +26,9 @@ class PathBus final : public driver::Bus {
 
  private:
   driver::Bus& bus_;
+  std::chrono::nanoseconds longest_;
   std::function<void()> meanwhile_;
   bool inside_ = false;  // of `meanwhile_`
 };
 
-}  // namespace trammel::linuxcnc
+}  // namespace trammel::run
