@@ -119,7 +119,7 @@ TEST(Region, AStatusIsWholeWhenItsSequenceIsEven) {
   Region region("one", folder.path);
   std::atomic<bool> ended{false};
   std::uint64_t torn = 0;
-  std::uint64_t read = 0;
+  std::atomic<std::uint64_t> read{0};
   const trammel_region& memory = region.memory();
   std::thread reader([&] {
     while (!ended) {
@@ -132,15 +132,15 @@ TEST(Region, AStatusIsWholeWhenItsSequenceIsEven) {
       for (unsigned n = 1; n < TRAMMEL_JOINTS; ++n) torn += copy.position[n] != copy.position[0] ? 1 : 0;
     }
   });
+  // Until the reader, which may begin late on a busy machine, has had a thousand copies out of this traffic.
   trammel_status status{};
-  for (std::int64_t n = 0; n < 100'000; ++n) {
+  for (std::int64_t n = 0; n < 100'000 || read < 1000; ++n) {
     for (std::int64_t& position : status.position) position = n;
     region.publish(status);
   }
   ended = true;
   reader.join();
   EXPECT_EQ(torn, 0U);
-  EXPECT_GT(read, 0U);
 }
 
 TEST(Region, WakesWhenItIsTold) {
