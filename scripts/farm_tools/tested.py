@@ -80,7 +80,7 @@ def fuzzers() -> List[Job]:
 def program(name: str, job: str = "", long_run: bool = True) -> Job:
     # Not by ctest, whose time-outs for long runs are set when the tests are linked.
     return Job(job or f"program-{name}", "program",
-               ("build/release/tests/apps/test_programs", f"--gtest_filter={PROGRAMS[name]}"), SOURCES, ("build-release",),
+               ("build/release/bin/test_programs", f"--gtest_filter={PROGRAMS[name]}"), SOURCES, ("build-release",),
                {"TRAMMEL_LONG": "1"} if long_run else {}, tools=COMPILERS)
 
 

@@ -47,11 +47,12 @@ def read_release(path: Path) -> results.Records:
 def release_text(records: results.Records) -> str:
     """Sorted, a line for each record's identity, run, result, counts and tools, so that differences are readable."""
     lines = (("job", "kind", "command"), ("commit", "clean", "inputs"), ("begun", "seconds", "processor_seconds"),
-             ("result", "exit_status", "log"), ("counts",), ("machine", "tools"))
+             ("result", "exit_status", "log"), ("counts",), ("machine", "tools"), ("tests",))
     texts = []
     for job in sorted(records):
-        fields = [", ".join(f"{json.dumps(name)}: {json.dumps(records[job][name], sort_keys=True)}" for name in line)
-                  for line in lines]
+        entry = records[job]
+        fields = [", ".join(f"{json.dumps(name)}: {json.dumps(entry[name], sort_keys=True)}" for name in line)
+                  for line in lines if line[0] in entry]
         texts.append("    {" + ",\n     ".join(fields) + "}")
     return '{\n  "records": [\n' + ",\n".join(texts) + "\n  ]\n}\n"
 

@@ -64,19 +64,24 @@ FIELDS: Dict[str, Tuple[Callable[[object], bool], str]] = {
     "machine": (_is_machine, "processors and architecture"),
     "log": (_is_inside, "a path relative to the folder of results"),
 }
+OPTIONAL = {
+    "tests": (_maps_to(lambda value: value in ("passed", "failed", "skipped")), "passed, failed or skipped by test"),
+}
 
 
 def check(record: object, where: str) -> dict:
-    """The record, when it has all fields and no others, each as it must be."""
+    """The record, when it has all fields and no unknown ones, each as it must be."""
     if not isinstance(record, dict):
         raise RecordError(f"{where}: is no object")
-    for name, (right, text) in FIELDS.items():
+    for name, (right, text) in {**FIELDS, **OPTIONAL}.items():
+        if name not in record and name in OPTIONAL:
+            continue
         if name not in record:
             raise RecordError(f"{where}: field {name}: missing")
         if not right(record[name]):
             raise RecordError(f"{where}: field {name}: must be {text}, is {json.dumps(record[name])}")
     for name in record:
-        if name not in FIELDS:
+        if name not in FIELDS and name not in OPTIONAL:
             raise RecordError(f"{where}: field {name}: unknown")
     if (record["result"] == "passed") != (record["exit_status"] == 0):
         raise RecordError(f"{where}: field exit_status: {record['exit_status']}, though the result is {record['result']}")

@@ -6,7 +6,7 @@ import unittest
 
 from support import InAFolder, a_record, random_records
 
-from records import counts, keep, record, results  # noqa: E402
+from records import counts, keep, record, results, suite  # noqa: E402
 
 WRONG = {
     "job": ["", "../x", 3], "kind": ["other"], "command": [None], "commit": ["0123", "z" * 40], "clean": [1, "true"],
@@ -78,6 +78,35 @@ class Merge(InAFolder):
         self.assertEqual(results.read_folder(self.folder), {"a": a_record("a")})
 
 
+JUNIT = """<testsuite>
+<testcase name="gcode.A" status="run"><properties><property name="cmake_labels" value="gcode;slow"/></properties></testcase>
+<testcase name="gcode.B" status="fail"/>
+<testcase name="seeded_bug.C" status="run"><properties><property name="cmake_labels" value="lockstep;seeded_bug"/></properties></testcase>
+<testcase name="panel.D" status="notrun"/><testcase name="E" status="disabled"/>
+</testsuite>"""
+
+
+class Suite(InAFolder):
+    def setUp(self):
+        super().setUp()
+        self.junit = self.folder / "tests.xml"
+        self.junit.write_text(JUNIT)
+
+    def test_counts_and_seeded_bugs(self):
+        self.assertEqual(suite.counts_of(self.junit), {"tests": 5, "tests_passed": 2, "tests_failed": 1, "tests_skipped": 2,
+                                                       "seeded_bugs_found": 1})
+
+    def test_verdicts_of_judges_from_elsewhere(self):
+        judges = self.folder / "judges.toml"
+        self.assertEqual(suite.foreign(self.junit, judges), {})
+        judges.write_text('[[judge]]\ntests = "^gcode[.]"\n[[judge]]\npart = "x"\n[[judge]]\ntests = "^panel"\n')
+        verdicts = suite.foreign(self.junit, judges)
+        self.assertEqual(verdicts, {"gcode.A": "passed", "gcode.B": "failed", "panel.D": "skipped"})
+        record.check(a_record(tests=verdicts), "x")
+        with self.assertRaisesRegex(record.RecordError, "field tests"):
+            record.check(a_record(tests={"a": "run"}), "x")
+
+
 class Counts(InAFolder):
     def test_of_a_log_of_ctest(self):
         log = ("12: 300 clocks of random traffic compared, 4 holds\n13: 200 clocks of random traffic compared, 0 holds\n"
@@ -114,8 +143,9 @@ class Keep(InAFolder):
     def test_merges_and_writes_the_same_in_any_order(self):
         self.kept(a_record("b"), a_record("a", result="failed", exit_status=1))
         text = (self.folder / "evidence" / "0.1.0-rc2.json").read_text()
-        self.kept(a_record("a"), a_record("c"))
+        self.kept(a_record("a"), a_record("c", tests={"gcode.A": "passed"}))
         self.assertEqual(list(self.release()), ["a", "b", "c"])
+        self.assertEqual(self.release()["c"]["tests"], {"gcode.A": "passed"})
         self.assertEqual(keep.release_text({"b": a_record("b"), "a": a_record("a", result="failed", exit_status=1)}), text)
         self.assertLess(max(map(len, text.splitlines())), 200)
 
