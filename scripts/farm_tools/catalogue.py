@@ -18,9 +18,9 @@ def samples() -> List[Job]:
     """One or two short jobs of every kind, with the builds that they need."""
     jobs = [job for job in (*tested.builds(), *hardware.tools()) if job.id != "build-mutation"]
     blocks = "^lockstep[.](feed_generator|arc_generator|motion_core_4)[.].*Random"
-    jobs += [tested.ctest("quick-lockstep", "lockstep", "release", "-R", blocks, inputs=tested.LOCKSTEP, TRAMMEL_SEED="99",
+    jobs += [tested.ctest("quick-lockstep", "lockstep", "release", "-R", blocks, inputs=tested.LOCKSTEP, TRAMMEL_SEED="7",
                           TRAMMEL_LONG="4"),
-             hardware.mutation("quick-mutation", 1, 4, "--module", "watchdog", "--judges",
+             hardware.mutation("quick-mutation", 1, 8, "--module", "feed_generator", "--judges",
                                "build/release/mutation/sample_judges.json", build="mutation-sample"),
              hardware.proof("frame_sender", "quick-proof"),
              hardware.netlist("hx8k-axis"),
