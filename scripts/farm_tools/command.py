@@ -56,6 +56,8 @@ def arguments_of(argv):
     reporting.add_argument("folder", type=Path, metavar="DIR")
     expecting = command("expect", "take the measured seconds of a folder of results into the list", expect)
     expecting.add_argument("folder", type=Path, metavar="DIR")
+    expecting.add_argument("--processor", dest="field", action="store_const", const="processor_seconds", default="seconds",
+                           help="take processor seconds: for results of a machine that had other work")
     add_slurm(commands.add_parser("slurm", help="run jobs as Slurm job arrays", description="Runs jobs as Slurm job arrays. The "
                                   "checkout and the folder of results must be shared by all nodes."), command)
     add_cluster(commands.add_parser("cluster", help="a Slurm cluster of one node, for trying", description="Starts and ends a "
@@ -159,7 +161,8 @@ def show_report(arguments) -> int:
 
 def expect(arguments) -> int:
     jobs = [*catalogue.whole(), *catalogue.quick()]
-    print(f"seconds of {catalogue.measure(jobs, results.read_folder(arguments.folder))} jobs taken into {catalogue.EXPECTED}")
+    number = catalogue.measure(jobs, results.read_folder(arguments.folder), arguments.field)
+    print(f"seconds of {number} jobs taken into {catalogue.EXPECTED}")
     return 0
 
 

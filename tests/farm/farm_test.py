@@ -105,7 +105,7 @@ class OnThisMachine(InAFolder):
     def test_nothing_begins_behind_a_build_that_failed(self):
         self.assertEqual(self.farm(shell("build-all", "false", kind="build"), self.counting("a", needs=("build-all",))), 1)
         self.assertEqual((self.found(), self.runs("a")), ({"build-all": "failed"}, 0))
-        self.assertIn("build-all did not pass", self.said)
+        self.assertIn("1 jobs were not begun: build-all did not pass", self.said)
 
     def test_processor_seconds_are_those_of_the_children(self):
         burn = "import time\nwhile time.process_time() < 0.4: pass"
