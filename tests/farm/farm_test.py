@@ -74,6 +74,12 @@ class OnThisMachine(InAFolder):
         self.assertEqual(self.farm(*jobs[:3], changed), 0)
         self.assertEqual([self.runs(name) for name in ("build-all", "a", "b", "c")], [2, 2, 2, 2])
 
+    def test_builds_alone_are_run_with_what_they_need(self):
+        first = shell("build-a", f"printf x >>{self.folder}/build-a", kind="build")
+        second = shell("build-b", f"test -e {self.folder}/build-a", kind="build", needs=("build-a",))
+        self.assertEqual(self.farm(first, second), 0)
+        self.assertEqual(self.runs("build-a"), 1)
+
     def test_changed_inputs_and_failures_are_due(self):
         tried = self.counting("a", inputs=("scripts/farm",))
         self.farm(tried)

@@ -33,6 +33,8 @@ BUGS = [
      "farm_test.OnThisMachine.test_a_rerun_does_only_what_is_needed"),
     ("farm_tools/due.py", 'if found[job.id]["result"] != "passed":', "if False:",
      "farm_test.OnThisMachine.test_changed_inputs_and_failures_are_due"),
+    ("farm_tools/due.py", "            wanted |= set(job.needs)", "            pass",
+     "farm_test.OnThisMachine.test_builds_alone_are_run_with_what_they_need"),
     ("farm_tools/processes.py", "if int(fields[3]) == session and", "if int(fields[2]) == session and",
      "farm_test.OnThisMachine.test_a_time_out_ends_the_job_and_its_children"),
     ("farm_tools/command.py", "return 1 if due.due(jobs, found) else 0", "return 0",
