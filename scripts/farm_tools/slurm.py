@@ -1,0 +1,149 @@
+"""The list of jobs as Slurm job arrays. A task's place in the list is its index; the records are the result, whatever
+accounting the cluster has."""
+
+import json
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import threading
+import time
+from itertools import groupby
+from pathlib import Path
+from typing import Dict, List, Set
+
+from records import identity, record, results
+
+from .due import why
+from .job import Job, JobError, read_list, write_list
+from .run_job import Run
+
+ACTIVE = "PENDING,CONFIGURING,RUNNING,SUSPENDED,COMPLETING,REQUEUED,REQUEUE_HOLD,STAGE_OUT,STOPPED"
+MARGIN = 2  # minutes that Slurm gives beyond a job's own limit: that one leaves a record
+
+
+class SlurmError(Exception):
+    """Slurm refused something, or is not there."""
+
+
+def call(*command: str) -> str:
+    try:
+        done = subprocess.run(command, capture_output=True, text=True)
+    except FileNotFoundError as error:
+        raise SlurmError(f"{command[0]} is missing: install Slurm's commands (Debian: slurm-wlm), or try a cluster of one "
+                         "node: scripts/farm cluster up DIR") from error
+    if done.returncode:
+        raise SlurmError(f"{' '.join(command[:3])}: {done.stderr.strip()}")
+    return done.stdout
+
+
+class Submission:
+    """What was submitted for a folder of results: DIR/slurm/jobs.json, and the arrays with their indices."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder.resolve()
+        self.place = self.folder / "slurm"
+        self.list, self.file = self.place / "jobs.json", self.place / "arrays.json"
+        if not self.file.exists():
+            raise SlurmError(f"{folder}: nothing was submitted for this folder (scripts/farm slurm submit --out {folder})")
+        self.jobs = read_list(self.list)
+        self.arrays: Dict[str, List[int]] = json.loads(self.file.read_text())
+
+    def active(self) -> Dict[int, str]:
+        """The state of each task that has not ended, by its index."""
+        states = {}
+        for line in call("squeue", "-h", "-r", "-t", ACTIVE, "-o", "%F %K %T").splitlines():
+            array, index, state = line.split()
+            if array in self.arrays:
+                states[int(index)] = state
+        return states
+
+    def submitted(self) -> List[int]:
+        return sorted(index for indices in self.arrays.values() for index in indices)
+
+    def states(self) -> Dict[str, str]:
+        """Of each job that was submitted: Slurm's state while it is under way, then the record's result, or "no record"."""
+        active, found = self.active(), results.read_folder(self.folder)
+        ended = {job.id: found[job.id]["result"] if job.id in found else "no record" for job in self.jobs}
+        return {self.jobs[index].id: active.get(index, ended[self.jobs[index].id]).lower() for index in self.submitted()}
+
+
+def submit(jobs: List[Job], folder: Path, partition: str = "") -> str:
+    """Submits the jobs, each kind as an array behind the builds that it needs."""
+    place = folder.resolve() / "slurm"
+    if (place / "arrays.json").exists() and Submission(folder).active():
+        raise SlurmError(f"{folder}: jobs of an earlier submission are under way: scripts/farm slurm wait or cancel first")
+    (place / "logs").mkdir(parents=True, exist_ok=True)
+    write_list(place / "jobs.json", jobs)
+    arrays: Dict[str, List[int]] = {}
+    array_of: Dict[str, str] = {}
+    indices = sorted(range(len(jobs)), key=lambda index: group_of(jobs[index], index))
+    for _, group in groupby(indices, key=lambda index: group_of(jobs[index], index)):
+        members = list(group)
+        needs = {array_of[need] for index in members for need in jobs[index].needs if need in array_of}
+        array = call(*command_of([jobs[index] for index in members], members, needs, place, partition)).strip().split(";")[0]
+        arrays[array] = members
+        array_of.update({jobs[index].id: array for index in members})
+        record.write_text(place / "arrays.json", json.dumps(arrays) + "\n")
+    return f"{len(jobs)} jobs submitted as {len(arrays)} arrays"
+
+
+def group_of(job: Job, index: int):
+    """Jobs of one array: builds alone and first, in the order of the list; others of a kind that need the same."""
+    return (0, index, ()) if job.kind == "build" else (1, job.kind, job.needs)
+
+
+def command_of(jobs: List[Job], indices: List[int], needs: Set[str], place: Path, partition: str) -> List[str]:
+    minutes = max(job.time_limit() for job in jobs) // 60 + MARGIN
+    task = shlex.join([sys.executable, "-B", str(identity.ROOT / "scripts" / "farm"), "slurm", "task", "--out", str(place.parent)])
+    return ["sbatch", "--parsable", "--requeue", f"--job-name=trammel-{jobs[0].kind}", f"--chdir={identity.ROOT}",
+            f"--array={','.join(map(str, indices))}", f"--time={minutes}", f"--output={place}/logs/%a.log", "--open-mode=append",
+            "--kill-on-invalid-dep=yes", *([f"--dependency=afterok:{':'.join(sorted(needs))}"] if needs else []),
+            *(["--exclusive"] if jobs[0].kind == "build" else ["--cpus-per-task=1"]),
+            *([f"--partition={partition}"] if partition else []), f"--wrap=exec {task}"]
+
+
+def task(folder: Path) -> int:
+    """Runs the job of this array's task. Slurm's signal to end leaves a record, too."""
+    jobs = read_list(folder / "slurm" / "jobs.json")
+    index = os.environ.get("SLURM_ARRAY_TASK_ID", "")
+    if not index.isdigit() or int(index) >= len(jobs):
+        raise JobError(f"SLURM_ARRAY_TASK_ID is {index or 'not set'}; this is for tasks of scripts/farm slurm submit")
+    run = Run(jobs[int(index)], folder)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: threading.Thread(target=run.cancel).start())
+    entry = run.run()
+    print(f"{entry['job']}: {entry['result']}")
+    return 0 if entry["result"] == "passed" else 1
+
+
+def wait(folder: Path, seconds: float = 2.0) -> bool:
+    """Waits until all tasks have ended; whether all jobs that were submitted have passed."""
+    submission, last = Submission(folder), ""
+    while active := submission.active():
+        running = sum(state == "RUNNING" for state in active.values())
+        text = f"{len(submission.submitted()) - len(active)} of {len(submission.submitted())} ended, {running} running"
+        if text != last:
+            print(f"\r\033[K{text}" if sys.stderr.isatty() else text, end="" if sys.stderr.isatty() else "\n", file=sys.stderr,
+                  flush=True)
+        last = text
+        time.sleep(seconds)
+    return all(state == "passed" for state in submission.states().values())
+
+
+def cancel(folder: Path):
+    call("scancel", *Submission(folder).arrays)
+
+
+def requeue(folder: Path) -> List[str]:
+    """Runs again what has ended without a pass, while Slurm still knows it; the jobs."""
+    submission = Submission(folder)
+    active, found = submission.active(), results.read_folder(submission.folder)
+    again = []
+    for array, indices in submission.arrays.items():
+        for index in indices:
+            if index not in active and why(submission.jobs[index], found):
+                call("scontrol", "requeue", f"{array}_{index}")
+                again.append(submission.jobs[index].id)
+    return again
