@@ -7,25 +7,19 @@ import re
 import tomllib
 from pathlib import Path
 
+from records import keep
+
 ROOT = Path(__file__).resolve().parents[2]
 EVIDENCE = ROOT / "verif/evidence"
 VERDICTS = ("PASS", "CORRECTED", "ADDED", "OPEN", "FAIL")
 
 
-def release_order(name: str) -> list:
-    """0.10.0-rc2 comes behind 0.9.0-rc11."""
-    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
-
-
 def releases(folder: Path) -> list[dict]:
-    """The release candidates with their runs, the oldest first. A file of another shape is an error that names it."""
-    found = []
-    for file in folder.glob("*-rc*.json"):
-        content = json.loads(file.read_text())
-        if not isinstance(content.get("records"), list):
-            raise SystemExit(f"error: {file}: it has no list named records; scripts/evidence keep writes such files")
-        found.append({"release": file.stem, "file": f"verif/evidence/{file.name}", "records": content["records"]})
-    return sorted(found, key=lambda release: release_order(release["release"]))
+    """The release candidates with their runs, the oldest first."""
+    files = [file for file in folder.glob("*.json") if keep.RELEASE.fullmatch(file.stem)]
+    files.sort(key=lambda file: tuple(map(int, keep.RELEASE.fullmatch(file.stem).groups())))
+    return [{"release": file.stem, "file": f"verif/evidence/{file.name}", "records": list(keep.read_release(file).values())}
+            for file in files]
 
 
 def sizes() -> list[dict]:
@@ -81,7 +75,7 @@ def gather(folder: Path = EVIDENCE) -> dict:
     return {
         "release": newest["release"],
         "runs_file": newest["file"],
-        "runs": sorted(newest["records"], key=lambda record: record["job"]),
+        "runs": newest["records"],
         "modules": json.loads((EVIDENCE / "modules.json").read_text()),
         "foreign_judges": foreign_judges(newest["records"]),
         "sizes": sizes(),
