@@ -17,8 +17,10 @@ SUMMARIES = (
     re.compile(r"tests passed, (?P<tests_failed>\d+) tests? failed out of (?P<tests>\d+)"),
     re.compile(r"^(?P<mutants>\d+) mutants: ", re.M),
     re.compile(r"^of those that lived (?P<mutants_listed>\d+) are listed as equivalent, (?P<mutants_unlisted>\d+) are not", re.M),
+    re.compile(r"^(?P<seeded_bugs_found>\d+) of \d+ seeded bugs found$", re.M),
     re.compile(r"stat::number_of_executed_units: (?P<inputs_tried>\d+)"),
 )
+PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) .* s  (ok|FAILED)", re.M)
 GOOGLETEST = re.compile(r"^\[  PASSED  \] (\d+) tests?\.", re.M)
 SKIPPED = re.compile(r"^\t *\d+ - .* \((?:Skipped|Disabled)\)$", re.M)
 
@@ -35,6 +37,9 @@ def of_text(text: str) -> Dict[str, int]:
     for summary in SUMMARIES:
         for match in summary.finditer(text):
             found.update({name: int(number) for name, number in match.groupdict().items()})
+    proofs = PROOF_RUN.findall(text)
+    if proofs:
+        found.update({"proof_runs": len(proofs), "proof_runs_as_expected": proofs.count("ok")})
     if "tests" in found:
         found["tests_skipped"] = len(SKIPPED.findall(text))
     else:  # one program, without ctest

@@ -121,6 +121,9 @@ class Counts(InAFolder):
         self.assertEqual(counts.of_text("[  PASSED  ] 2 tests.\n"), {"tests": 2})
         self.assertEqual(counts.of_text("6661 cells\n83100 kHz\n6721 cells at most\n"),
                          {"cells": 6661, "kHz": 83100, "cells at most": 6721})
+        log = ("cover    busy_timer over                                  0.1 s  ok\n"
+               "bug      busy_timer late                                  0.1 s  FAILED (status 1)\n5 of 5 seeded bugs found\n")
+        self.assertEqual(counts.of_text(log), {"proof_runs": 2, "proof_runs_as_expected": 1, "seeded_bugs_found": 5})
         self.assertEqual(counts.of_text("3 mice\nstat::number_of_executed_units: 4321\n"), {"inputs_tried": 4321})
 
     def test_of_mutants_and_proofs(self):
