@@ -13,43 +13,7 @@ from typing import Callable
 from records import identity
 
 DAEMONS = ("slurmd", "slurmctld", "munged")  # in the order in which they end
-# cred_expire: a requeued task waits so long for its old credential. sched_interval: so long until it is looked at. A task has
-# no default memory of its own otherwise, and takes the whole node's.
-CONFIGURATION = """ClusterName=trammel
-SlurmctldHost={host}(127.0.0.1)
-SlurmUser={user}
-SlurmdUser={user}
-SlurmctldPort={controller_port}
-SlurmdPort={node_port}
-AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket,cred_expire=5
-CredType=cred/munge
-StateSaveLocation={folder}/state
-SlurmdSpoolDir={folder}/spool
-SlurmctldPidFile={folder}/slurmctld.pid
-SlurmdPidFile={folder}/slurmd.pid
-SlurmctldLogFile={folder}/slurmctld.log
-SlurmdLogFile={folder}/slurmd.log
-ProctrackType=proctrack/linuxproc
-TaskPlugin=task/none
-SwitchType=switch/none
-MpiDefault=none
-JobAcctGatherType=jobacct_gather/none
-AccountingStorageType=accounting_storage/none
-SelectType=select/cons_tres
-SelectTypeParameters=CR_CPU
-SchedulerType=sched/builtin
-SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,default_queue_depth=1000
-SlurmdParameters=config_overrides
-MaxArraySize=20001
-MaxJobCount=50000
-MinJobAge=3600
-KillWait=15
-ReturnToService=2
-MailProg=/bin/true
-NodeName={host} NodeAddr=127.0.0.1 CPUs={processors} RealMemory={memory} State=UNKNOWN
-PartitionName=trammel DefMemPerCPU=100 Nodes={host} Default=YES MaxTime=INFINITE State=UP
-"""
+CONFIGURATION = Path(__file__).with_name("slurm.conf.template")
 
 
 class ClusterError(Exception):
@@ -98,7 +62,7 @@ def up(folder: Path, processors: int) -> str:
     key.touch(0o600)
     key.write_bytes(secrets.token_bytes(128))
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20
-    (folder / "slurm.conf").write_text(CONFIGURATION.format(
+    (folder / "slurm.conf").write_text(CONFIGURATION.read_text().format(
         host=socket.gethostname().split(".")[0], user=getpass.getuser(), folder=folder, processors=processors, memory=memory,
         controller_port=free_port(), node_port=free_port()))
     start(folder, "munged", f"--key-file={key}", f"--socket={folder}/munge.socket", f"--pid-file={folder}/munged.pid",

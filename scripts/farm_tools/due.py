@@ -25,11 +25,11 @@ def due(jobs: Iterable[Job], found: results.Records) -> List[Job]:
     """The jobs that are due, in order. A build of which nothing else is due is not."""
     jobs = list(jobs)
     reasons: Dict[str, str] = {job.id: why(job, found) for job in jobs}
-    asked = {need for job in jobs if job.kind != "build" and reasons[job.id] for need in job.needs}
+    wanted = {job.id for job in jobs if reasons[job.id] and (job.kind != "build" or is_alone(job, jobs))}
     for job in reversed(jobs):  # those that need others come behind them
-        if job.id in asked:
-            asked |= set(job.needs)
-    return [job for job in jobs if reasons[job.id] and (job.kind != "build" or job.id in asked or is_alone(job, jobs))]
+        if job.id in wanted:
+            wanted |= set(job.needs)
+    return [job for job in jobs if reasons[job.id] and job.id in wanted]
 
 
 def is_alone(job: Job, jobs: List[Job]) -> bool:

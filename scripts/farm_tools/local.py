@@ -68,10 +68,16 @@ class Machine:
             except KeyboardInterrupt:
                 self.stop()
                 self._await_all(unfinished)
-        for job in waiting:
-            needed = [need for need in job.needs if need in unfinished]
-            self.progress.ended(job, "not begun" + (f": {', '.join(needed)} did not pass" if needed else ""))
+        self._say_what_is_left(waiting)
         return self.records
+
+    def _say_what_is_left(self, waiting: List[Job]):
+        """The builds for want of which nothing more began."""
+        failed = [job for job, entry in self.records.items() if entry["result"] != "passed" and any(
+            job in each.needs for each in waiting)]
+        if waiting:
+            why = f": {', '.join(failed)} did not pass" if failed else ""
+            print(f"{len(waiting)} jobs were not begun{why}", file=sys.stderr)
 
     def _begin(self, pool, waiting: List[Job], unfinished: set):
         for job in plan.ready(waiting, unfinished, self.order):

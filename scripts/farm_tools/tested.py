@@ -23,6 +23,7 @@ RANDOM = ("^lockstep[.].*(Random|Storm|EqualsModelInEvery|EveryOutputInEvery|All
           "BouncingInputs|CapturesAndDrops|LockstepUnderTraffic|OnTimesFollow)")
 WHOLE_CARDS = "^lockstep[.](card[.]|card_engines|motion_core)"
 NO_LOCKSTEP = "^lockstep[.](checker|selftest)"
+# Seconds below are guesses until somebody has measured them: scripts/farm expect.
 # Five seeds of four times the length: as many clocks as scripts/test --long lockstep.
 SEEDS, LENGTH = range(1, 6), "4"
 STOP_SHARDS, SANITIZER_SHARDS = 4, 16
@@ -39,9 +40,9 @@ PROGRAMS = {
 }
 
 
-def ctest(name: str, kind: str, build: str, *options: str, inputs=SOURCES, **environment: str) -> Job:
+def ctest(name: str, kind: str, build: str, *options: str, inputs=SOURCES, seconds=300.0, **environment: str) -> Job:
     return Job(name, kind, ("ctest", "--test-dir", WORK, "--no-tests=error", "-V", *options), inputs, (f"build-{build}",),
-               environment, tests=build, tools=COMPILERS)
+               environment, tests=build, tools=COMPILERS, seconds=seconds)
 
 
 def builds() -> List[Job]:
@@ -62,7 +63,8 @@ def locksteps() -> List[Job]:
         changed = {"inputs": LOCKSTEP, "TRAMMEL_SEED": str(seed), "TRAMMEL_LONG": LENGTH}
         jobs += [ctest(f"lockstep-blocks-s{seed}", "lockstep", "release", "-R", RANDOM, "-E", f"{WHOLE_CARDS}|{NO_LOCKSTEP}",
                        **changed),
-                 ctest(f"lockstep-cards-s{seed}", "lockstep", "release", "-R", f"({WHOLE_CARDS}).*Random", **changed)]
+                 ctest(f"lockstep-cards-s{seed}", "lockstep", "release", "-R", f"({WHOLE_CARDS}).*Random",
+                       seconds=450.0, **changed)]
     jobs += [ctest(f"lockstep-stops-{shard}-of-{STOP_SHARDS}", "lockstep", "release", "-L", "stops", "-I",
                    f"{shard},,{STOP_SHARDS}", inputs=LOCKSTEP, TRAMMEL_LONG="32") for shard in range(1, STOP_SHARDS + 1)]
     return jobs
@@ -81,7 +83,7 @@ def program(name: str, job: str = "", long_run: bool = True) -> Job:
     # Not by ctest, whose time-outs for long runs are set when the tests are linked.
     return Job(job or f"program-{name}", "program",
                ("build/release/bin/test_programs", f"--gtest_filter={PROGRAMS[name]}"), SOURCES, ("build-release",),
-               {"TRAMMEL_LONG": "1"} if long_run else {}, tools=COMPILERS)
+               {"TRAMMEL_LONG": "1"} if long_run else {}, tools=COMPILERS, seconds=300)
 
 
 def has_programs() -> bool:
@@ -93,7 +95,7 @@ def programs() -> List[Job]:
 
 
 def sanitizer(name: str, shard: int, shards: int) -> Job:
-    return ctest(name, "sanitizer", "dev", "-LE", "slow|package|armhf", "-I", f"{shard},,{shards}")
+    return ctest(name, "sanitizer", "dev", "-LE", "slow|package|armhf", "-I", f"{shard},,{shards}", seconds=10_000.0 / shards)
 
 
 def sanitizers() -> List[Job]:

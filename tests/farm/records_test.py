@@ -82,6 +82,7 @@ JUNIT = """<testsuite>
 <testcase name="gcode.A" status="run"><properties><property name="cmake_labels" value="gcode;slow"/></properties></testcase>
 <testcase name="gcode.B" status="fail"/>
 <testcase name="seeded_bug.C" status="run"><properties><property name="cmake_labels" value="lockstep;seeded_bug"/></properties></testcase>
+<testcase name="seeded_bug.F" status="fail"><properties><property name="cmake_labels" value="seeded_bug"/></properties></testcase>
 <testcase name="panel.D" status="notrun"/><testcase name="E" status="disabled"/>
 </testsuite>"""
 
@@ -93,7 +94,7 @@ class Suite(InAFolder):
         self.junit.write_text(JUNIT)
 
     def test_counts_and_seeded_bugs(self):
-        self.assertEqual(suite.counts_of(self.junit), {"tests": 5, "tests_passed": 2, "tests_failed": 1, "tests_skipped": 2,
+        self.assertEqual(suite.counts_of(self.junit), {"tests": 6, "tests_passed": 2, "tests_failed": 2, "tests_skipped": 2,
                                                        "seeded_bugs_found": 1})
 
     def test_verdicts_of_judges_from_elsewhere(self):
