@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 import time
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 from typing import Dict, List, Set
@@ -28,6 +29,9 @@ def submit(jobs: List[Job], folder: Path, partition: str = "") -> str:
     if (place / "arrays.json").exists() and Submission(folder).active():
         raise SlurmError(f"{folder}: jobs of an earlier submission are under way: scripts/farm slurm wait or cancel first")
     (place / "logs").mkdir(parents=True, exist_ok=True)
+    # Builds that are not due are there already.
+    submitted = {job.id for job in jobs}
+    jobs = [replace(job, needs=tuple(need for need in job.needs if need in submitted)) for job in jobs]
     write_list(place / "jobs.json", jobs)
     arrays: Dict[str, List[int]] = {}
     array_of: Dict[str, str] = {}

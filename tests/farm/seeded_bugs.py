@@ -63,6 +63,7 @@ SLURM_BUGS = [
      UNDER_SLURM + "test_a_job_that_runs_out_of_time_leaves_a_record_and_no_process"),
     ("farm_tools/slurm.py", "if index not in active and why(submission.jobs[index], found):", "if False:",
      UNDER_SLURM + "test_builds_come_first_one_fails_and_is_requeued"),
+    ("farm_tools/slurm.py", "if need in submitted)", "if True)", UNDER_SLURM + "test_builds_come_first_one_fails_and_is_requeued"),
     ("farm_tools/command.py", "results.merge(part for _, part in parts)", "parts[0][1]",
      UNDER_SLURM + "test_results_of_two_submissions_merge"),
 ]

@@ -75,6 +75,11 @@ class UnderSlurm(unittest.TestCase):
         # Nothing is due any more.
         self.submit(build, *jobs)
         self.assertIn("0 of 8 jobs are due", self.said)
+        # One is, and the build that it needs is there.
+        (self.out / "job-3.json").unlink()
+        self.submit(build, *jobs)
+        self.assertEqual(self.farm("slurm", "wait"), 0, self.said)
+        self.assertEqual(self.found()["job-3"], "passed")
 
     def test_a_job_that_runs_out_of_time_leaves_a_record_and_no_process(self):
         marker = f"6{os.getpid()}"
