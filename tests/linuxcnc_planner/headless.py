@@ -109,17 +109,18 @@ def changed(text, changes):
 
 class Headless:
     """One run of LinuxCNC; `scenario` is a function of ui.py, which writes what it saw to result.json. With `trammel` the
-    owner is `trammel linuxcnc`, with `arguments`; `changes`: texts of the INI file and what stands there instead; `hal`: more
-    lines of the HAL file."""
+    owner is `trammel linuxcnc`, with `arguments` and `engine`, its name and clock; `changes`: texts of the INI file and what
+    stands there instead; `hal`: more lines of the HAL file."""
 
-    def __init__(self, owner, module, scenario, program="", surface=None, trammel=None, arguments=(), changes=(), hal=""):
+    def __init__(self, owner, module, scenario, program="", surface=None, trammel=None, arguments=(), changes=(), hal="",
+                 engine=("model", 1_000_000)):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-planner-", dir="/var/tmp"))
         self.name = f"test{os.getpid()}"
         self.owner_command = [owner, self.name, "owner.log", *([str(surface)] if surface is not None else [])]
         middle = HAL_ECHO
         if trammel is not None:
-            self.owner_command = [trammel, "linuxcnc", "--name", self.name, "--engine", "model", "--clock",
-                                  "1000000", "--record", "owner.log", *arguments]
+            self.owner_command = [trammel, "linuxcnc", "--name", self.name, "--engine", engine[0], "--clock",
+                                  str(engine[1]), "--record", "owner.log", *arguments]
             middle = HAL_COMPONENT
         for file, text in {"test.ini": changed(ini(), changes), "machine.hal": HAL_BEGIN + middle + HAL_END + hal,
                            "program.ngc": program, "tools.tbl": "",

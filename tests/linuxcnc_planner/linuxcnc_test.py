@@ -95,6 +95,17 @@ def whole():
     return f"{len(expected)} steps; longest call {seen['longest_call']} ns"
 
 
+def whole_rtl():
+    """As whole(), with the Verilated card in lockstep with the model, in real time: at a clock that it keeps up with."""
+    clock = 100_000
+    seen, log = play("program", EVERY_KIND, trammel=TRAMMEL, engine=("rtl", clock))
+    made = [(int(words[3]), int(words[4])) for words in log if words[0] == "step"]
+    expected = run_at_the_card(EVERY_KIND, clock)
+    require(len(expected) > 5000 and made == expected, f"another path: {len(made)} steps for {len(expected)}, {seen}")
+    require(seen["errors"] == [] and seen["position"] == [0, 0, 0], seen)
+    return f"{len(expected)} steps at {clock / 1000:.0f} kHz"
+
+
 def stop_realtime(run):
     process = run.realtime_process()
     for _ in range(3):
@@ -237,12 +248,12 @@ M2
 """
 
 
-def run_at_the_card(program):
-    """Steps of each axis, and what they come to, as `trammel run` makes them."""
+def run_at_the_card(program, clock=1_000_000):
+    """Axis and direction of each step, as `trammel run` makes them."""
     with tempfile.TemporaryDirectory() as folder:
         file, steps = pathlib.Path(folder) / "program.ngc", pathlib.Path(folder) / "steps"
         file.write_text(program)
-        subprocess.run([TRAMMEL, "run", file, "--engine", "model", "--clock", "1000000", "--path-steps", steps],
+        subprocess.run([TRAMMEL, "run", file, "--engine", "model", "--clock", str(clock), "--path-steps", steps],
                        check=True, stdout=subprocess.DEVNULL)
         rows = [row.split(",") for row in steps.read_text().splitlines()]
     axis, direction = (rows[0].index(name) for name in ("axis", "direction"))
@@ -304,7 +315,7 @@ def refusals():
 
 
 SHORT = (path,)
-LONG = (whole, whole_stalls, stalls, probe, pause_and_abort, outputs, card_outputs, inches, owner_dies, refusals)
+LONG = (whole, whole_rtl, whole_stalls, stalls, probe, pause_and_abort, outputs, card_outputs, inches, owner_dies, refusals)
 
 
 def main():

@@ -16,6 +16,7 @@ component.newpin("at-speed", hal.HAL_BIT, hal.HAL_OUT)
 component.newpin("adaptive", hal.HAL_FLOAT, hal.HAL_OUT)
 component.newpin("counts", hal.HAL_S32, hal.HAL_OUT)
 component.ready()
+names = {pin["NAME"] for pin in hal.get_info_pins()}
 component["at-speed"] = True
 component["adaptive"] = 1
 hal.connect("planner-ui.at-speed", "at-speed")
@@ -28,7 +29,14 @@ def connect(pin, signal, kind, target):
     hal.connect(target, signal)
 
 
+def linked():
+    """Owner and modules know each other; without the HAL component there is but one link."""
+    links = [pin for pin in ("trammel-planner.link-ok", "trammel.link-ok") if pin in names]
+    return all(hal.get_value(pin) for pin in links)
+
+
 def switch_on():
+    until(linked, 20, "the link to the owner")
     command.state(linuxcnc.STATE_ESTOP_RESET)
     command.wait_complete()
     command.state(linuxcnc.STATE_ON)
