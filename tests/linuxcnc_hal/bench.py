@@ -32,6 +32,7 @@ class Bench:
             shutil.copy(file, self.folder)
         for file in [*HERE.glob("*.py"), HERE.parent / "support" / "linuxcnc_ui.py"]:
             shutil.copy(file, self.folder)
+        self.memory = pathlib.Path(f"/dev/shm/trammel-linuxcnc.{self.name}")
         self.owners = []
         self.process = None
 
@@ -47,7 +48,7 @@ class Bench:
         if self.process is not None and self.process.poll() is None:
             self.process.kill()
             self.process.wait()
-        pathlib.Path(f"/dev/shm/trammel-linuxcnc.{self.name}").unlink(missing_ok=True)
+        self.memory.unlink(missing_ok=True)
         if kind is None:
             shutil.rmtree(self.folder)
         else:
@@ -81,11 +82,15 @@ class Bench:
         return {"PATH": os.environ["PATH"], "LC_ALL": "C", "HOME": str(self.folder), "DISPLAY": "",
                 "TRAMMEL_LINUXCNC": self.name}
 
-    def start_owner(self, *arguments):
-        """Waits until it is ready."""
+    def hand_over(self):
+        """The folder, to the user of both processes."""
         shutil.chown(self.folder, USER)
         for file in self.folder.iterdir():
             shutil.chown(file, USER)
+
+    def start_owner(self, *arguments):
+        """Waits until it is ready."""
+        self.hand_over()
         out = open(self.folder / "owner.log", "a")
         begun = out.tell()
         owner = subprocess.Popen(

@@ -94,6 +94,11 @@ def follow():
     end()
 
 
+def begin_and_end():
+    begin()
+    end()
+
+
 def index():
     """An index edge becomes the joint's zero; the other joints keep theirs."""
     begin()

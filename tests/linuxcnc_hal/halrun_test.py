@@ -11,7 +11,7 @@ import signal
 import sys
 import time
 
-from bench import PERIOD, Bench, Spoiled, check, run_tests, stalled
+from bench import PERIOD, USER, Bench, Spoiled, check, run_tests, stalled, wait_until
 from record import Record
 
 TRAMMEL, MODULES = sys.argv[1:3]
@@ -87,6 +87,21 @@ def follows():
               f"{result['longest latency'] * 1000:.1f} ms; {result}")
 
 
+def linuxcnc_first():
+    """LinuxCNC's rtapi_app, with root's rights, makes the memory as the user who runs it; the owner comes later."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        bench.write("scenario", "begin_and_end")
+        bench.write("drive.hal", script(bench.name))
+        bench.hand_over()
+        bench.start(["halrun", "drive.hal"])
+        wait_until(bench.memory.exists, 20, "the shared memory")
+        found = bench.memory.stat()
+        check(bench.memory.owner() == USER and found.st_mode & 0o777 == 0o600, f"made as {found}")
+        bench.start_owner(*bench.simulated())
+        result = bench.finish(40, LEAD)
+        check(not result["underrun"] and any(result["counts"]), f"{result}")
+
+
 INDEX_AT = 2  # mm
 WORLD = f"""
 [switch.x_index]
@@ -129,5 +144,5 @@ def watchdog():
         print(f"stop-cause {result['stop-cause behind the bite']}; {result}")
 
 
-named = {test.__name__: test for test in (follows, index, watchdog)}
+named = {test.__name__: test for test in (follows, linuxcnc_first, index, watchdog)}
 run_tests([named[name] for name in sys.argv[3:] or named], MODULES)
