@@ -100,7 +100,8 @@ struct MachineOutputs {
   std::uint16_t m4 = 0;  // and counter-clockwise
   std::uint16_t m7 = 0;  // mist
   std::uint16_t m8 = 0;  // flood
-  std::array<std::uint16_t, kMaxOutputs> numbered{};  // of M62 to M65, by their P
+  // Of M62 to M65, by their P.
+  std::array<std::uint16_t, kMaxOutputs> numbered{};
 
   // Outputs whose pulses S sets; M3 and M4 switch them on, too. The table [spindle]; without it S has no effect.
   std::uint16_t pwm = 0;
