@@ -238,6 +238,14 @@ def card_outputs():
     return f"switched at {[place for _, place in changes]} mm"
 
 
+def jogs():
+    seen, _ = play("jogs", trammel=TRAMMEL)
+    require(seen["counts"] == [PULSES, PULSES, 0] and seen["errors"] == [], seen)
+    require(seen["position"] == [1, 1, 0], seen)
+    require(max(abs(x - 0.337 * (n + 1)) for n, x in enumerate(seen["jogged"])) < 1 / PULSES, seen)
+    return f"jogged to X {seen['jogged'][-1]:.4f}, then to pulse {seen['counts'][0]}"
+
+
 INCHES = """G20 G90 G17 G64
 F60
 G0 X0.3 Y0.1
@@ -315,7 +323,7 @@ def refusals():
 
 
 SHORT = (path,)
-LONG = (whole, whole_rtl, whole_stalls, stalls, probe, pause_and_abort, outputs, card_outputs, inches, owner_dies, refusals)
+LONG = (whole, whole_rtl, whole_stalls, stalls, probe, pause_and_abort, outputs, card_outputs, jogs, inches, owner_dies, refusals)
 
 
 def main():

@@ -142,6 +142,23 @@ def card_outputs():
     result["outputs"] = seen
 
 
+def jogs():
+    """Jogs end between two pulses; the motions behind them begin on one, and nothing adds up."""
+    for n in range(5):
+        mode(linuxcnc.MODE_MANUAL)
+        command.teleop_enable(1)
+        command.wait_complete()
+        start = stat.position[0]
+        command.jog(linuxcnc.JOG_INCREMENT, 0, 0, 3, 0.337)
+        until(lambda: abs(stat.position[0] - start - 0.337) < 1e-5 and stat.axis[0]["velocity"] == 0 and stat.inpos, 20,
+              "jogged")
+        until(lambda: abs(stat.actual_position[0] - stat.position[0]) < 0.02, 20, "the card is there")
+        result.setdefault("jogged", []).append(stat.position[0])
+        mdi(f"G1 F600 Y{n}")
+    mdi("G0 X1 Y1 Z0")
+    result["counts"] = [hal.get_value(f"trammel.joint.{n:02d}.counts") for n in range(3)]
+
+
 def owner_dies():
     start_program()
     until(lambda: stat.position[1] > 0.5, 20, "moving")
