@@ -117,6 +117,8 @@ class Headless:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-planner-", dir="/var/tmp"))
         self.name = f"test{os.getpid()}"
         self.owner_command = [owner, self.name, "owner.log", *([str(surface)] if surface is not None else [])]
+        # The Verilated card needs most of a core to keep to the time.
+        self.priority = ["chrt", "--rr", "1"] if engine[0] == "rtl" and os.geteuid() == 0 else []
         middle = HAL_ECHO
         if trammel is not None:
             self.owner_command = [trammel, "linuxcnc", "--name", self.name, "--engine", engine[0], "--clock",
@@ -143,7 +145,7 @@ class Headless:
 
     def start(self):
         environment = {**os.environ, "HOME": str(self.folder), "TRAMMEL_LINUXCNC": self.name, "DISPLAY": ""}
-        self.owner = subprocess.Popen(self.command(self.owner_command), cwd=self.folder, env=environment,
+        self.owner = subprocess.Popen([*self.priority, *self.command(self.owner_command)], cwd=self.folder, env=environment,
                                       stdout=subprocess.DEVNULL)
         arguments = ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--kill-child", "--mount-proc",
                      "--", "sh", "-c",
