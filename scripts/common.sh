@@ -31,6 +31,8 @@ debian_packages_linuxcnc=(linuxcnc-uspace linuxcnc-uspace-dev iproute2)
 # A sender with windows, and a screen for it.
 debian_packages_senders=(bcnc python3-numpy xvfb)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
+# A cluster of one node, for trying scripts/farm slurm.
+debian_packages_farm=(slurm-wlm munge)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
 armhf_libraries=(libfmt9 libfmt-dev libtoml11-dev nlohmann-json3-dev libgtest-dev libgmock-dev librapidcheck-dev)

@@ -11,11 +11,19 @@ import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Tuple
 
 from . import equivalents, judges
 
 COLUMNS = ["id", "how", "judge", "seconds", "module", "file", "line", "kind", "nth", "original", "mutated"]
+
+
+def shard_of(text: str) -> Tuple[int, int]:
+    """K and N of "K/N"."""
+    number, slash, count = text.partition("/")
+    if not (slash and number.isdigit() and count.isdigit() and 1 <= int(number) <= int(count)):
+        raise argparse.ArgumentTypeError(f"{text}: must be K/N with K from 1 to N")
+    return int(number), int(count)
 
 
 def arguments_of(argv):
@@ -23,6 +31,9 @@ def arguments_of(argv):
     parser.add_argument("--sample", type=int, metavar="N",
                         help="N mutants of blocks with a lockstep of their own, chosen at random, none of them listed as equivalent")
     parser.add_argument("--seed", type=int, default=1, metavar="S", help="of the random choice (default 1)")
+    parser.add_argument("--shard", type=shard_of, metavar="K/N",
+                        help="the K-th of N parts of equal length, in the order of files; a judge is first tried on the sound design "
+                        "when a mutant needs it")
     parser.add_argument("--module", action="append", metavar="NAME", help="only mutants of this module; may be repeated")
     parser.add_argument("--list", action="store_true", help="list the mutants, try none")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), metavar="N",
@@ -33,8 +44,13 @@ def arguments_of(argv):
     places.add_argument("--mutants", type=Path, default=Path("build/release/mutation/rtl/mutants.json"))
     places.add_argument("--judges", type=Path, default=Path("build/release/mutation/judges.json"))
     places.add_argument("--equivalents", type=Path, default=Path("verif/mutation/equivalents"))
-    places.add_argument("--out", type=Path, default=Path("build/mutation"), help="folder of results.csv")
-    return parser.parse_args(argv)
+    places.add_argument("--out", type=Path, help="folder of results.csv (default build/mutation, a shard's its own in there)")
+    arguments = parser.parse_args(argv)
+    if arguments.out is None:
+        arguments.out = Path("build/mutation")
+        if arguments.shard:
+            arguments.out /= "shard-{}-of-{}".format(*arguments.shard)
+    return arguments
 
 
 def chosen(mutants: List[dict], all_judges: List[judges.Judge], arguments, listed) -> List[dict]:
@@ -50,6 +66,11 @@ def chosen(mutants: List[dict], all_judges: List[judges.Judge], arguments, liste
         mutants = [mutant for mutant in mutants if mutant["id"] not in listed and mutant["file"] in blocks]
         drawn = {mutant["id"]: hashlib.sha256(f"{arguments.seed} {mutant['id']}".encode()).digest() for mutant in mutants}
         mutants = sorted(mutants, key=lambda mutant: drawn[mutant["id"]])[:arguments.sample]
+    if arguments.shard:
+        # Neighbours: those of one file have the same judges, whose sound runs cost as much as many mutants.
+        number, count = arguments.shard
+        mutants = sorted(mutants, key=lambda mutant: (mutant["file"], mutant["number"]))
+        mutants = mutants[len(mutants) * (number - 1) // count:len(mutants) * number // count]
     return mutants
 
 
@@ -159,8 +180,9 @@ def main(argv=None) -> int:
     all_judges = [judge for judge in all_judges if files & set(judge.sources)]
     results = Results(arguments.out, judges.fingerprint(all_judges), arguments.resume)
     try:
+        at_once = [] if arguments.shard else [judge for judge in all_judges if not judge.last_resort]
         with ThreadPoolExecutor(arguments.jobs) as pool:
-            list(pool.map(judges.try_sound_design, (judge for judge in all_judges if not judge.last_resort)))
+            list(pool.map(judges.try_sound_design, at_once))
     except judges.SoundDesignRefused as error:
         sys.exit(f"mutate: {error}")
     start = time.monotonic()

@@ -118,6 +118,19 @@ class Campaign(Folder):
         self.assertEqual(chosen[0], chosen[1])
         self.assertNotEqual(chosen[0], chosen[2])
 
+    def test_shards_are_the_whole_and_no_more(self):
+        ids = []
+        for number in (1, 2, 3):
+            self.run_with("", "--shard", f"{number}/3")
+            self.assertGreater(len(self.results()), 0)
+            ids += [row["id"] for row in self.results()]
+        self.assertEqual(sorted(ids), sorted(mutant["id"] for mutant in json.loads((BUILD / "mutants.json").read_text())))
+
+    def test_a_shard_that_is_none_is_refused(self):
+        for shard in ("0/3", "4/3", "1", "a/b"):
+            with self.assertRaises(SystemExit):
+                self.run_with("", "--shard", shard)
+
     def test_a_sample_has_none_that_is_listed(self):
         whole = len(json.loads((BUILD / "mutants.json").read_text()))
         self.assertEqual(self.run_with(self.entries(LIVING), "--sample", str(whole - 1)), 0)

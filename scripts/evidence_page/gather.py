@@ -1,0 +1,95 @@
+"""Collects the data of the evidence page from tracked files alone, so that the page can be made of any clone.
+
+Nothing is worked out anew here: figures of runs come from verif/evidence/*.json (scripts/evidence keep writes them), those of
+modules from verif/evidence/modules.json (scripts/rtl/judges), sizes from boards/results, the papers from docs/papers."""
+import json
+import re
+import tomllib
+from pathlib import Path
+
+from records import keep
+
+ROOT = Path(__file__).resolve().parents[2]
+EVIDENCE = ROOT / "verif/evidence"
+VERDICTS = ("PASS", "CORRECTED", "ADDED", "OPEN", "FAIL")
+
+
+def releases(folder: Path) -> list[dict]:
+    """The release candidates with their runs, the oldest first."""
+    files = [file for file in folder.glob("*.json") if keep.RELEASE.fullmatch(file.stem)]
+    files.sort(key=lambda file: tuple(map(int, keep.RELEASE.fullmatch(file.stem).groups())))
+    return [{"release": file.stem, "file": f"verif/evidence/{file.name}", "records": list(keep.read_release(file).values())}
+            for file in files]
+
+
+def sizes() -> list[dict]:
+    """Builds and bitstreams as they were placed, with the clock of each seed in MHz."""
+    rows = []
+    for device, unit in (("hx8k", "LC"), ("ecp5-25k", "COMB")):
+        file = ROOT / f"boards/results/{device}.json"
+        for name, build in json.loads(file.read_text())["builds"].items():
+            rows.append(size_row(name, build, unit, file))
+    file = ROOT / "boards/results/boards.json"
+    for name, build in json.loads(file.read_text()).items():
+        rows.append(size_row(f"board {name}", build, "LC" if "ice40" in build["tools"] else "COMB", file))
+    return rows
+
+
+def size_row(name: str, build: dict, unit: str, file: Path) -> dict:
+    return {"build": name, "area": build["area"], "unit": unit, "memory": build["memory"], "fmax_mhz": build["fmax_mhz"],
+            "median_fmax_mhz": build["median_fmax_mhz"], "tools": build["tools"], "rtl": build.get("rtl"),
+            "file": str(file.relative_to(ROOT))}
+
+
+def papers() -> list[dict]:
+    """How many items of each paper came out how, as docs/papers/README.md says below each paper's title."""
+    rows, title = [], None
+    for line in (ROOT / "docs/papers/README.md").read_text().splitlines():
+        if heading := re.match(r"## \[(.+)\]\((.+)\)", line):
+            title = heading
+        elif title and re.match(r"\d+ PASS, ", line):
+            counts = {verdict: int(number) for number, verdict in re.findall(r"(\d+) ([A-Z]+)", line)}
+            rows.append({"paper": title.group(1), "file": f"docs/papers/{title.group(2)}", **counts})
+    if len(rows) != 2 or any(set(VERDICTS) - set(row) for row in rows):
+        raise SystemExit("error: docs/papers/README.md does not have both papers with the number of their items: trammel reproduce")
+    return rows
+
+
+def foreign_judges(records: list[dict]) -> list[dict]:
+    """Each judge with the runs that it was part of: those of its part, and the tests that its pattern names."""
+    judges = tomllib.loads((EVIDENCE / "foreign_judges.toml").read_text())["judge"]
+    for judge in judges:
+        runs = [r for r in records if "part" in judge and r["job"] == f"part-{judge['part']}"]
+        tests = {name: result for r in records for name, result in r.get("tests", {}).items()
+                 if "tests" in judge and re.search(judge["tests"], name)}
+        results = [r["result"] == "passed" for r in runs] + [result == "passed" for result in tests.values()]
+        judge |= {"runs": [r["job"] for r in runs], "passed_tests": sum(v == "passed" for v in tests.values()), "all_tests": len(tests),
+                  "result": "not run" if not results else "passed" if all(results) else "failed"}
+    return judges
+
+
+def gather(folder: Path = EVIDENCE) -> dict:
+    """All that the page shows; `folder` holds the release candidates' runs."""
+    candidates = releases(folder)
+    newest = candidates[-1] if candidates else {"release": None, "file": None, "records": []}
+    return {
+        "release": newest["release"],
+        "runs_file": newest["file"],
+        "runs": newest["records"],
+        "modules": json.loads((EVIDENCE / "modules.json").read_text()),
+        "foreign_judges": foreign_judges(newest["records"]),
+        "sizes": sizes(),
+        "papers": papers(),
+        "peers": tomllib.loads((EVIDENCE / "peers.toml").read_text())["figure"],
+        "history": [{"release": c["release"], "totals": totals(c["records"])} for c in candidates],
+    }
+
+
+def totals(records: list[dict]) -> dict:
+    """Sums over the runs of a release candidate, for the charts."""
+    sums = {"runs": len(records), "failed runs": sum(record["result"] != "passed" for record in records),
+            "processor hours": round(sum(record["processor_seconds"] for record in records) / 3600, 2)}
+    for record in records:
+        for name, count in record["counts"].items():
+            sums[name] = sums.get(name, 0) + count
+    return sums

@@ -1,0 +1,87 @@
+"""The parts of the evidence page as HTML: a function for each section, from the data of gather()."""
+from html import escape
+
+# Where the page's links lead: the site's own pages of the files (scripts/documentation/site-pages), from build/site/evidence.
+SOURCE = "../source"
+
+
+def link(path: str, text: str) -> str:
+    """A link to the site's page of a file of the project."""
+    page = path.removesuffix(".md")
+    target = f"../{page.removeprefix('docs/')}.html" if path.startswith("docs/") else f"{SOURCE}/{page}.html"
+    return f'<a href="{escape(target)}">{escape(text)}</a>'
+
+
+def code(text: str) -> str:
+    return f"<code>{escape(text)}</code>"
+
+
+def mark(result: str) -> str:
+    """A verdict as a word with its colour's class."""
+    kind = {"passed": "good", "failed": "bad", "timeout": "bad", "cancelled": "bad"}.get(result, "none")
+    return f'<span class="{kind}">{escape(result)}</span>'
+
+
+def table(head: list[str], rows: list[list[str]], caption: str) -> str:
+    """Cells are HTML already. A table without rows says so instead of showing an empty frame."""
+    if not rows:
+        return f"<p>{escape(caption)}: <span class=\"none\">nothing is recorded yet</span></p>"
+    lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
+    heads = "".join(f"<th>{escape(title)}</th>" for title in head)
+    return f"<table><caption>{escape(caption)}</caption><thead><tr>{heads}</tr></thead>\n<tbody>{lines}</tbody></table>"
+
+
+def number(value: int) -> str:
+    return f"{value:,}"
+
+
+def runs(data: dict) -> str:
+    rows = [[code(run["job"]), mark(run["result"]), "; ".join(f"{number(n)} {escape(what)}" for what, n in sorted(run["counts"].items())),
+             f"{run['processor_seconds']:,.0f}", f"{run['seconds']:,.0f}", code(run["commit"][:8]), code(run["command"])]
+            for run in data["runs"]]
+    return table(["run", "result", "counted", "processor s", "s", "commit", "command"], rows, "Complete runs of this release candidate")
+
+
+def modules(data: dict) -> str:
+    rows = []
+    for row in data["modules"]:
+        proof = link(f"verif/formal/{row['proof']}.properties", row["proof"]) if row["proof"] else '<span class="none">none</span>'
+        rows.append([link(f"rtl/{row['file']}", row["module"]), code(row["lockstep"]), number(row["seeded_bugs"]), proof,
+                     number(row["mutants"]), number(row["listed"])])
+    return table(["module", "smallest lockstep", "seeded bugs", "proof", "mutants", "listed as equivalent"], rows, "Modules of the RTL")
+
+
+def foreign_judges(data: dict) -> str:
+    rows = []
+    for judge in data["foreign_judges"]:
+        seen = [f"{judge['passed_tests']} of {judge['all_tests']} tests"] if judge["all_tests"] else []
+        seen += [code(job) for job in judge["runs"]]
+        rows.append([link(judge["page"], judge["name"]), escape(judge["version"]), escape(judge["judges"]), mark(judge["result"]),
+                     ", ".join(seen)])
+    return table(["judge", "version", "what it judges", "result", "in"], rows, "Judges that nobody here wrote")
+
+
+def sizes(data: dict) -> str:
+    rows = [[escape(row["build"]), f"{number(row['area'])} {row['unit']}", number(row["memory"]), f"{row['median_fmax_mhz']:g}",
+             " ".join(f"{f:g}" for f in row["fmax_mhz"]), code(str(row["rtl"])), link("boards/results/README.md", row["tools"])]
+            for row in data["sizes"]]
+    return table(["build", "size", "block RAMs", "MHz, median", "MHz, each seed", "RTL of", "tools"], rows, "Sizes and clocks")
+
+
+def papers(data: dict) -> str:
+    verdicts = ["PASS", "CORRECTED", "ADDED", "OPEN", "FAIL"]
+    rows = [[link(row["file"], row["paper"]), *(f'<span class="{"bad" if v == "FAIL" and row[v] else "plain"}">{row[v]}</span>' for v in verdicts)]
+            for row in data["papers"]]
+    return table(["paper", *verdicts], rows, "Items of both papers, made again by trammel reproduce")
+
+
+def peers(data: dict) -> str:
+    rows = [[escape(row["what"]), escape(row["peer"]), with_address(row["source"]), escape(row["here"]), code(row["shown_by"])]
+            for row in data["peers"]]
+    return table(["what", "another controller", "read in", "this card", "shown by"], rows, "Figures of others")
+
+
+def with_address(source: str) -> str:
+    """A source is an address, a blank and where to look there."""
+    address, _, place = source.partition(" ")
+    return f'<a href="{escape(address)}">{escape(address.split("//")[-1].split("/")[0])}</a> {escape(place)}'

@@ -1,0 +1,1 @@
+"""The farm: the project's long checks as a list of jobs, which runs on this machine or under Slurm."""

@@ -1,0 +1,103 @@
+"""Jobs over the C++ build: builds, locksteps by seed, fuzzers, programs, sanitizers."""
+
+from pathlib import Path
+from typing import List
+
+from .job import WORK, Job
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILD = "scripts/farm_tools/build"
+COMPILERS = ("g++", "cmake", "verilator")
+
+# What a build is made of, and so all that runs in it.
+SOURCES = ("CMakeLists.txt", "CMakePresets.json", "cmake", "rtl", "frames", "cpp-model", "driver", "transport", "host", "sim",
+           "world", "serve", "bindings", "clients", "apps", "web", "boards", "examples", "tests", "verif", ":!verif/formal",
+           ":!verif/evidence", "requirements.txt", BUILD)
+# Without what only the host's side has.
+LOCKSTEP = ("CMakeLists.txt", "cmake", "rtl", "frames", "cpp-model", "driver", "sim", "boards", "tests/support", "verif/lockstep",
+            "requirements.txt")
+LIMIT_OF_BUILDS = 4 * 3600
+
+# Locksteps whose scenarios are drawn at random, by the seed; all others run once.
+RANDOM = ("^lockstep[.].*(Random|Storm|EqualsModelInEvery|EveryOutputInEvery|AllHostsAtOnce|AnyLevels|BouncingLevels|"
+          "BouncingInputs|CapturesAndDrops|LockstepUnderTraffic|OnTimesFollow)")
+WHOLE_CARDS = "^lockstep[.](card[.]|card_engines|motion_core)"
+NO_LOCKSTEP = "^lockstep[.](checker|selftest)"
+# Seconds below are guesses until somebody has measured them: scripts/farm expect.
+# Five seeds of four times the length: as many clocks as scripts/test --long lockstep.
+SEEDS, LENGTH = range(1, 6), "4"
+STOP_SHARDS, SANITIZER_SHARDS = 4, 16
+FUZZERS, FUZZ_SEEDS, FUZZ_SECONDS = ("interpolation", "gcode", "frames"), range(1, 3), 600
+
+# Programs of ../shared/gcode, by GoogleTest's names.
+PROGRAMS = {
+    **{name.replace("_", "-"): f"Gcode/Jobs.RunsOnBothEngines/{name}"
+       for name in ("jsdc_laser", "tball", "arc_xz_plane", "arc_yz_plane", "g2_arc", "circle_inch")},
+    "octocat-slow-bus": "Gcode.OctocatOnASlowBusHasNoUnderRun",
+    "octocat-first-lines": "Gcode.OctocatsFirstLinesOverASlowLineToTheVerilatedCard",
+    "octocat-slow-line": "Gcode.OctocatOverASlowLine",
+    "refused": "Gcode.CircleDiamondSquareIsRefused:Gcode.FullCircleWithoutXyzIsRefused",
+}
+
+
+def ctest(name: str, kind: str, build: str, *options: str, inputs=SOURCES, seconds=300.0, **environment: str) -> Job:
+    return Job(name, kind, ("ctest", "--test-dir", WORK, "--no-tests=error", "-V", *options), inputs, (f"build-{build}",),
+               environment, tests=build, tools=COMPILERS, seconds=seconds)
+
+
+def builds() -> List[Job]:
+    def made(name: str, needs=(), products=(), seconds=600.0) -> Job:
+        return Job(f"build-{name}", "build", (BUILD, name), SOURCES, needs, products=products, tools=COMPILERS,
+                   seconds=seconds, limit=LIMIT_OF_BUILDS)
+
+    # One after the other: two builds in one folder wait for each other, and each takes all processors of its machine.
+    return [made("release", products=("build/release/bin/trammel",), seconds=1200),
+            made("mutation-sample", ("build-release",), ("build/release/mutation/sample_judges.json",)),
+            made("mutation", ("build-mutation-sample",), ("build/release/mutation/judges.json",)),
+            made("dev", ("build-release",), ("build/dev/bin/trammel",), 3600)]
+
+
+def locksteps() -> List[Job]:
+    jobs = [ctest("lockstep-directed", "lockstep", "release", "-L", "lockstep", "-E", f"{RANDOM}|{NO_LOCKSTEP}", inputs=LOCKSTEP)]
+    for seed in SEEDS:
+        changed = {"inputs": LOCKSTEP, "TRAMMEL_SEED": str(seed), "TRAMMEL_LONG": LENGTH}
+        jobs += [ctest(f"lockstep-blocks-s{seed}", "lockstep", "release", "-R", RANDOM, "-E", f"{WHOLE_CARDS}|{NO_LOCKSTEP}",
+                       **changed),
+                 ctest(f"lockstep-cards-s{seed}", "lockstep", "release", "-R", f"({WHOLE_CARDS}).*Random",
+                       seconds=450.0, **changed)]
+    jobs += [ctest(f"lockstep-stops-{shard}-of-{STOP_SHARDS}", "lockstep", "release", "-L", "stops", "-I",
+                   f"{shard},,{STOP_SHARDS}", inputs=LOCKSTEP, TRAMMEL_LONG="32") for shard in range(1, STOP_SHARDS + 1)]
+    return jobs
+
+
+def fuzzer(name: str, target: str, seed: int, seconds: int) -> Job:
+    return Job(name, "fuzz", ("scripts/farm_tools/fuzz", target, str(seconds), str(seed), WORK), SOURCES, ("build-release",),
+               tools=("clang-14",), seconds=seconds + 5, measured=True)
+
+
+def fuzzers() -> List[Job]:
+    return [fuzzer(f"fuzz-{target}-s{seed}", target, seed, FUZZ_SECONDS) for target in FUZZERS for seed in FUZZ_SEEDS]
+
+
+def program(name: str, job: str = "", long_run: bool = True) -> Job:
+    # Not by ctest, whose time-outs for long runs are set when the tests are linked.
+    return Job(job or f"program-{name}", "program",
+               ("build/release/bin/test_programs", f"--gtest_filter={PROGRAMS[name]}"), SOURCES, ("build-release",),
+               {"TRAMMEL_LONG": "1"} if long_run else {}, tools=COMPILERS, seconds=300)
+
+
+def has_programs() -> bool:
+    return (ROOT.parent / "shared" / "gcode").is_dir()
+
+
+def programs() -> List[Job]:
+    return [program(name) for name in PROGRAMS] if has_programs() else []
+
+
+def sanitizer(name: str, shard: int, shards: int) -> Job:
+    return ctest(name, "sanitizer", "dev", "-LE", "slow|package|armhf", "-I", f"{shard},,{shards}", seconds=10_000.0 / shards)
+
+
+def sanitizers() -> List[Job]:
+    return [sanitizer(f"sanitizer-{shard}-of-{SANITIZER_SHARDS}", shard, SANITIZER_SHARDS)
+            for shard in range(1, SANITIZER_SHARDS + 1)]

@@ -1,0 +1,64 @@
+"""How much a run has compared: from the lines that tests print, and from the results of scripts/mutate and scripts/prove."""
+
+import csv
+import re
+from collections import Counter
+from pathlib import Path
+from typing import Dict
+
+# Lines "NUMBER TEXT ...", in scripts/test "compared NUMBER TEXT". Their numbers are added.
+COUNTED = ("clocks of random traffic", "cycles of arcs", "stops judged", "of them with random inputs",
+           "frames through a bad link", "frames of random contents", "frames spoiled")
+# Figures of a placement, which stand for themselves.
+MEASURED = ("cells", "cells at most", "kHz", "kHz at least")
+LINE = re.compile(r"^(?:\d+: |compared +)?(\d+) (.+)$", re.M)
+# What programs say about themselves at their end; the groups have the names of the counts.
+SUMMARIES = (
+    re.compile(r"tests passed, (?P<tests_failed>\d+) tests? failed out of (?P<tests>\d+)"),
+    re.compile(r"^(?P<mutants>\d+) mutants: ", re.M),
+    re.compile(r"^of those that lived (?P<mutants_listed>\d+) are listed as equivalent, (?P<mutants_unlisted>\d+) are not", re.M),
+    re.compile(r"stat::number_of_executed_units: (?P<inputs_tried>\d+)"),
+)
+GOOGLETEST = re.compile(r"^\[  PASSED  \] (\d+) tests?\.", re.M)
+SKIPPED = re.compile(r"^\t *\d+ - .* \((?:Skipped|Disabled)\)$", re.M)
+
+
+def of_text(text: str) -> Dict[str, int]:
+    """The counts of a log."""
+    found: Counter = Counter()
+    for number, words in LINE.findall(text):
+        name = next((name for name in COUNTED if words.startswith(name)), words if words in MEASURED else "")
+        if name in MEASURED:
+            found[name] = int(number)
+        elif name:
+            found[name] += int(number)
+    for summary in SUMMARIES:
+        for match in summary.finditer(text):
+            found.update({name: int(number) for name, number in match.groupdict().items()})
+    if "tests" in found:
+        found["tests_skipped"] = len(SKIPPED.findall(text))
+    else:  # one program, without ctest
+        programs = GOOGLETEST.findall(text)
+        found.update({"tests": sum(map(int, programs))} if programs else {})
+    return dict(found)
+
+
+def of_mutants(path: Path) -> Dict[str, int]:
+    """From results.csv: how many mutants ended how."""
+    with path.open(newline="") as file:
+        rows = [row["how"] for row in csv.DictReader(file)]
+    return {"mutants": len(rows), **{f"mutants {how}": number for how, number in sorted(Counter(rows).items())}}
+
+
+def of_proofs(path: Path) -> Dict[str, int]:
+    """From the list of results: runs, and how many ended as they had to."""
+    lines = path.read_text().splitlines()
+    return {"proof_runs": len(lines), "proof_runs_as_expected": lines.count("ok")}
+
+
+OF_FILES = {"results.csv": of_mutants, "results": of_proofs}
+
+
+def of_file(path: Path) -> Dict[str, int]:
+    """Of a result file, by its name; nothing when the run did not come as far as writing it."""
+    return OF_FILES[path.name](path) if path.exists() else {}

@@ -1,0 +1,35 @@
+"""What ctest's results in JUnit's form say."""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Dict, Iterator, List, Tuple
+from xml.etree import ElementTree
+
+from . import identity
+
+JUDGES = identity.ROOT / identity.EVIDENCE / "foreign_judges.toml"
+VERDICTS = {"run": "passed", "fail": "failed", "notrun": "skipped", "disabled": "skipped"}
+
+
+def tests_of(junit: Path) -> Iterator[Tuple[str, str, List[str]]]:
+    """Name, verdict and labels of each test."""
+    for case in ElementTree.parse(junit).getroot().iter("testcase"):
+        labels = [each.get("value", "") for each in case.iter("property") if each.get("name") == "cmake_labels"]
+        yield case.get("name", ""), VERDICTS.get(case.get("status", ""), "failed"), labels
+
+
+def counts_of(junit: Path) -> Dict[str, int]:
+    tests = list(tests_of(junit))
+    ended = [verdict for _, verdict, _ in tests]
+    found = sum(verdict == "passed" and "seeded_bug" in ";".join(labels).split(";") for _, verdict, labels in tests)
+    return {"tests": len(tests), "tests_passed": ended.count("passed"), "tests_failed": ended.count("failed"),
+            "tests_skipped": ended.count("skipped"), "seeded_bugs_found": found}
+
+
+def foreign(junit: Path, judges: Path = JUDGES) -> Dict[str, str]:
+    """The verdicts of the tests in which a program from elsewhere judges; none without the list of these."""
+    if not judges.exists():
+        return {}
+    patterns = [judge["tests"] for judge in tomllib.loads(judges.read_text()).get("judge", []) if "tests" in judge]
+    return {name: verdict for name, verdict, _ in tests_of(junit) if any(re.search(each, name) for each in patterns)}

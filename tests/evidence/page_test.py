@@ -1,0 +1,88 @@
+"""The evidence page: what a run's record must make of it. Seen to fail: with mark() always "good", with a release order by
+text, with a foreign judge that passes without a run, with cells that are not escaped."""
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+sys.dont_write_bytecode = True
+
+from evidence_page import charts, page  # noqa: E402
+from evidence_page.gather import gather  # noqa: E402
+from records import record  # noqa: E402
+
+
+def run(job, result="passed", **more):
+    return {"job": job, "kind": "part", "command": f"scripts/test --long {job}", "commit": "0123456789" * 4, "clean": True,
+            "inputs": "0" * 64, "begun": "2026-01-31T23:59:59.999Z", "seconds": 7200.0, "processor_seconds": 3600.0, "result": result,
+            "exit_status": int(result != "passed"), "counts": {"clocks compared": 1234567}, "tools": {},
+            "machine": {"processors": 2, "architecture": "x86_64"}, "log": f"{job}.log", **more}
+
+
+class Page(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def data(self, **records):
+        for release, runs in records.items():
+            (self.path / f"{release.removeprefix('v').replace('_', '.')}-rc1.json").write_text(json.dumps({"records": runs}))
+        return gather(self.path)
+
+    def judge(self, data, name):
+        return next(judge for judge in data["foreign_judges"] if judge["name"].startswith(name))
+
+    def test_a_failed_run_is_red_and_counted(self):
+        text = page.html(self.data(v1_0_0=[run("part-frames", "failed"), run("part-unit")]))
+        self.assertIn('<span class="bad">failed</span>', text)
+        self.assertIn('<span class="good">passed</span>', text)
+        self.assertIn("complete runs, 1 of them failed", text)
+
+    def test_each_number_has_its_command_and_commit(self):
+        text = page.html(self.data(v1_0_0=[run("part-unit")]))
+        self.assertIn("1,234,567 clocks compared", text)
+        self.assertIn("scripts/test --long part-unit", text)
+        self.assertIn("01234567", text)
+
+    def test_without_a_run_nothing_is_called_passed(self):
+        data = self.data()
+        self.assertEqual({judge["result"] for judge in data["foreign_judges"]}, {"not run"})
+        self.assertIn("0 of 10", page.html(data).replace(f"0 of {len(data['foreign_judges'])}", "0 of 10"))
+        self.assertNotIn('class="good"', page.html(data))
+
+    def test_a_foreign_judge_passes_only_where_all_its_tests_and_parts_do(self):
+        tests = {"linuxcnc.halrun": "passed", "linuxcnc.headless": "passed", "linuxcnc.other": "failed"}
+        passed = self.data(v1_0_0=[run("tests", tests=tests), run("part-linuxcnc")])
+        self.assertEqual(self.judge(passed, "LinuxCNC's HAL")["result"], "passed")
+        self.assertEqual(self.judge(passed, "LinuxCNC's HAL")["passed_tests"], 2)
+        failed = self.data(v1_0_0=[run("tests", tests={**tests, "linuxcnc.headless": "failed"}), run("part-linuxcnc")])
+        self.assertEqual(self.judge(failed, "LinuxCNC's HAL")["result"], "failed")
+        part = self.data(v1_0_0=[run("tests", tests=tests), run("part-linuxcnc", "timeout")])
+        self.assertEqual(self.judge(part, "LinuxCNC's HAL")["result"], "failed")
+
+    def test_the_newest_release_is_shown_by_number_not_by_text(self):
+        data = self.data(**{"v0_9_0": [run("part-unit")], "v0_10_0": [run("part-frames")]})
+        self.assertEqual(data["release"], "0.10.0-rc1")
+        self.assertEqual([entry["release"] for entry in data["history"]], ["0.9.0-rc1", "0.10.0-rc1"])
+        self.assertEqual(data["history"][0]["totals"]["processor hours"], 1.0)
+
+    def test_charts_begin_with_the_second_release(self):
+        self.assertIn("begin with the second", charts.section(self.data(v1_0_0=[run("part-unit")])["history"]))
+        history = self.data(v1_0_0=[run("part-unit")], v2_0_0=[run("part-unit")])["history"]
+        self.assertNotIn("begin with the second", charts.section(history))
+
+    def test_texts_are_escaped(self):
+        self.assertIn("a &lt;b&gt;", page.html(self.data(v1_0_0=[run("part-unit", command="a <b>")])))
+
+    def test_a_file_without_records_is_refused_by_name(self):
+        (self.path / "0.1.0-rc7.json").write_text("{}")
+        with self.assertRaisesRegex(record.RecordError, "0.1.0-rc7.json"):
+            gather(self.path)
+
+
+if __name__ == "__main__":
+    unittest.main()
