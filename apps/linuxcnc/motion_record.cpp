@@ -24,6 +24,10 @@ void MotionRecord::path_step(const driver::PathStep& step) {
   add(fmt::format("step,{},{},{},{}\n", step.cycle, step.command, step.axis, step.direction));
 }
 
+void MotionRecord::outputs_changed(const driver::OutputChange& change) {
+  add(fmt::format("output,{},{}\n", change.cycle, change.levels));
+}
+
 void MotionRecord::add(const std::string& line) {
   const std::lock_guard<std::mutex> lock(mutex_);
   text_ += line;

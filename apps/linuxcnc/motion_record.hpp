@@ -18,6 +18,7 @@ class MotionRecord final : public linuxcnc::ServoRecord, public driver::StepSink
   //   open,CLOCK,POSITION...            pulses from machine zero
   //   line,NUMBER,DURATION,TARGET...    of the period, ns, 2^-24 pulses from machine zero
   //   close,CLOCK
+  //   output,CLOCK,LEVELS               of all outputs, bit n: output n
   //   step,CLOCK,COMMAND,AXIS,DIRECTION on the path, before its shaper; COMMAND counts what the stream sent, from 0
   std::string text() const;
 
@@ -26,6 +27,7 @@ class MotionRecord final : public linuxcnc::ServoRecord, public driver::StepSink
   void closed(std::uint64_t clock) override;
   void pin_step(const driver::PinStep& /*step*/) override {}
   void path_step(const driver::PathStep& step) override;
+  void outputs_changed(const driver::OutputChange& change) override;
 
  private:
   void add(const std::string& line);

@@ -75,4 +75,8 @@ void PacedCard::path_step(const driver::PathStep& step) {
   if (also_ != nullptr) also_->path_step(step);
 }
 
+void PacedCard::outputs_changed(const driver::OutputChange& change) {
+  if (also_ != nullptr) also_->outputs_changed(change);
+}
+
 }  // namespace trammel::app

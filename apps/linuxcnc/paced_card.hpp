@@ -34,6 +34,7 @@ class PacedCard final : public driver::Bus, private driver::StepSink {
   void catch_up();
   void pin_step(const driver::PinStep& step) override;
   void path_step(const driver::PathStep& step) override;
+  void outputs_changed(const driver::OutputChange& change) override;
 
   std::unique_ptr<world::World> world_;
   std::unique_ptr<sim::Engine> engine_;

@@ -244,13 +244,8 @@ static void write_period(void* unused, long period) {
 }
 
 static int refuse(int error) {
-  const char* text = error == -EBUSY    ? "another component has it: one `loadrt trammel` per card"
-                     : error == -EPROTO ? "`trammel linuxcnc` is of another version: install both from one package"
-                     : error == -EINVAL ? "the name has a slash"
-                     : error == -EACCES ? "it belongs to another user: run `trammel linuxcnc` as the user of LinuxCNC"
-                                        : strerror(-error);
   rtapi_print_msg(RTAPI_MSG_ERR, "trammel: cannot share memory %s/%s%s: %s\n", TRAMMEL_REGION_FOLDER,
-                  TRAMMEL_REGION_PREFIX, name, text);
+                  TRAMMEL_REGION_PREFIX, name, ring_text_of(error));
   return error;
 }
 

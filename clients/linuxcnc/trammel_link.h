@@ -50,7 +50,7 @@ static int link_attach(struct link* link, const char* name) {
     close(fd);
     return error;
   }
-  if (region->version_owner != 0 && region->version_owner != TRAMMEL_REGION_VERSION) {
+  if (ring_check_version(region, fd, TRAMMEL_LOCK_PLANNER) != 0) {
     munmap(region, sizeof *region);
     close(fd);
     return -EPROTO;

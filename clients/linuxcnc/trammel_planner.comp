@@ -60,6 +60,17 @@ struct motion {
   struct state_tag_t tag;
 };
 
+/* The card switches those that the machine file names in their place on the path. */
+static void set_outputs(struct trammel_operation* operation, const syncdio_t* io) {
+  int n;
+  if (!io->anychanged) return;
+  for (n = 0; n < TRAMMEL_OUTPUTS; ++n) {
+    if (!(io->dio_mask >> n & 1)) continue;
+    operation->outputs |= UINT32_C(1) << n;
+    if (io->dios[n] > 0) operation->levels |= UINT32_C(1) << n;
+  }
+}
+
 /* Fills a slot, which the next period publishes. NULL: the ring is full. */
 static struct trammel_operation* add(TP_STRUCT* tp, uint32_t kind, const struct motion* motion) {
   struct trammel_operation* operation;
@@ -90,6 +101,7 @@ static struct trammel_operation* add(TP_STRUCT* tp, uint32_t kind, const struct 
   operation->most_speed = motion->most_speed;
   operation->most_acceleration = motion->acceleration;
   pose_to(operation->end, &motion->end);
+  set_outputs(operation, &tp->syncdio);
   waits[ring.written % TRAMMEL_OPERATIONS] = motion->type == EMC_MOTION_TYPE_PROBING ? WAIT_PROBE
                                              : motion->at_speed                      ? WAIT_AT_SPEED
                                                                                      : WAIT_NOT;
@@ -224,14 +236,12 @@ int tpSetSpindleSync(TP_STRUCT* const tp, int spindle, double sync, int mode) {
 
 EXTRA_SETUP() {
   const char* name = getenv("TRAMMEL_LINUXCNC");
-  const int error = ring_attach(&ring, name != NULL && name[0] != '\0' ? name : "0");
+  const char* region_name = name != NULL && name[0] != '\0' ? name : "0";
+  const int error = ring_attach(&ring, region_name);
   (void)__comp_inst, (void)prefix, (void)extra_arg;
-  if (error == -EBUSY) {
-    rtapi_print_msg(RTAPI_MSG_ERR, "trammel_planner: the shared memory is in use by another planner module, or of "
-                                   "another version: stop that LinuxCNC, or install both sides from one package\n");
-  } else if (error != 0) {
-    rtapi_print_msg(RTAPI_MSG_ERR, "trammel_planner: cannot attach %s/%s...: %s\n", TRAMMEL_REGION_FOLDER,
-                    TRAMMEL_REGION_PREFIX, strerror(-error));
+  if (error != 0) {
+    rtapi_print_msg(RTAPI_MSG_ERR, "trammel_planner: cannot share memory %s/%s%s: %s\n", TRAMMEL_REGION_FOLDER,
+                    TRAMMEL_REGION_PREFIX, region_name, ring_text_of(error));
   }
   return error;
 }

@@ -33,6 +33,8 @@ static uint64_t in_force_at, pose_in_force_at;   /* operations_done from which a
 static uint64_t probes, refusals, session, beat; /* as seen last */
 static unsigned silent = SILENT_PERIODS + 1;     /* periods without a new beat */
 static int clear_pending, pose_pending, reverse_told;
+static uint32_t outputs_pending, levels_pending; /* of M64 and M65 */
+static uint32_t switched;                        /* levels of LinuxCNC's outputs, as this module knows them */
 static EmcPose pose_to_set;
 
 static emcmot_status_t* status;
@@ -82,7 +84,7 @@ static void forget_unpublished(void) {
   }
 }
 
-/* The two that motmod may ask for outside of coordinated mode, where no period comes by here: the last one counts. */
+/* What motmod may ask for outside of coordinated mode, where no period comes by here: the last one counts. */
 static void flush_pending(void) {
   struct trammel_operation* operation;
   if (clear_pending && (operation = ring_slot(&ring, TRAMMEL_CLEAR)) != NULL) {
@@ -97,6 +99,26 @@ static void flush_pending(void) {
     waits[ring.written % TRAMMEL_OPERATIONS] = WAIT_NOT;
     ring_fill(&ring);
     in_force_at = pose_in_force_at = ring.written;
+  }
+  if (outputs_pending != 0 && (operation = ring_slot(&ring, TRAMMEL_SWITCH)) != NULL) {
+    operation->outputs = outputs_pending;
+    operation->levels = levels_pending;
+    outputs_pending = levels_pending = 0;
+    waits[ring.written % TRAMMEL_OPERATIONS] = WAIT_NOT;
+    ring_fill(&ring);
+  }
+}
+
+/* M64 and M65 go by the planner: motmod switches the pin. What this module has not switched itself came from there. */
+static void watch_outputs(void) {
+  int n;
+  for (n = 0; n < TRAMMEL_OUTPUTS && n < config->numDIO; ++n) {
+    const uint32_t bit = UINT32_C(1) << n;
+    const uint32_t level = status->synch_do[n] != 0 ? bit : 0;
+    if (level == (switched & bit)) continue;
+    switched ^= bit;
+    outputs_pending |= bit;
+    levels_pending = (levels_pending & ~bit) | level;
   }
 }
 
@@ -141,7 +163,9 @@ static void begin_segment(TP_STRUCT* tp, const struct segment* segment) {
   status->requested_vel = segment->speed;
   if (!segment->io.anychanged) return;
   for (n = 0; n < EMCMOT_MAX_DIO; ++n) {
-    if (segment->io.dio_mask >> n & 1) write_digital(n, segment->io.dios[n] > 0);
+    if (!(segment->io.dio_mask >> n & 1)) continue;
+    write_digital(n, segment->io.dios[n] > 0);
+    if (n < TRAMMEL_OUTPUTS) switched = (switched & ~(UINT32_C(1) << n)) | (uint32_t)(segment->io.dios[n] > 0) << n;
   }
   for (n = 0; n < EMCMOT_MAX_AIO; ++n) {
     if (segment->io.aio_mask >> n & 1) write_analog(n, segment->io.aios[n]);

@@ -28,8 +28,33 @@ struct ring {
   uint32_t stale;               /* copies that failed */
 };
 
-/* Makes the region where it does not exist. 0, or -errno; -EBUSY: another planner module has it, or a version of the
-   layout that this module does not know. The descriptor stays open: it holds the lock. */
+static int ring_is_locked(int file, int byte) {
+  struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = byte, .l_len = 1};
+  return fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
+/* The file outlives its owner. Where an owner of another version has left it and nobody uses it, it begins anew. 0, or
+   -EPROTO. `other`: the lock of the other module. */
+static int ring_check_version(struct trammel_region* region, int file, int other) {
+  if (region->version_owner == 0 || region->version_owner == TRAMMEL_REGION_VERSION) return 0;
+  if (ring_is_locked(file, TRAMMEL_LOCK_OWNER) || ring_is_locked(file, other)) return -EPROTO;
+  memset(region, 0, sizeof *region);
+  return 0;
+}
+
+/* Of what attaching gave. */
+static const char* ring_text_of(int error) {
+  return error == -EBUSY    ? "another LinuxCNC has it: end that one, or choose another name for each"
+         : error == -EPROTO ? "`trammel linuxcnc` is of another version: install both from one package"
+         : error == -EINVAL ? "the name has a slash"
+         : error == -EACCES
+             ? "it belongs to another user: run `trammel linuxcnc` as the user of LinuxCNC. A file that is "
+               "left of another user may be deleted when both have ended"
+             : strerror(-error);
+}
+
+/* Makes the region where it does not exist, as the user who runs LinuxCNC. 0, or -errno; -EBUSY: another planner module
+   has it; -EPROTO: its owner knows another layout. The descriptor stays open: it holds the lock. */
 static int ring_attach(struct ring* ring, const char* name) {
   char path[128];
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = TRAMMEL_LOCK_PLANNER, .l_len = 1};
@@ -46,7 +71,7 @@ static int ring_attach(struct ring* ring, const char* name) {
   if (found.st_size < (off_t)sizeof *region && ftruncate(fd, sizeof *region) != 0) return -errno;
   region = mmap(NULL, sizeof *region, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, fd, 0);
   if (region == MAP_FAILED) return -errno;
-  if (region->version_owner != 0 && region->version_owner != TRAMMEL_REGION_VERSION) return -EBUSY;
+  if (ring_check_version(region, fd, TRAMMEL_LOCK_HAL) != 0) return -EPROTO;
   region->version_planner = TRAMMEL_REGION_VERSION;
   ring->region = region;
   ring->head = ring->written = __atomic_load_n(&region->operation_head, __ATOMIC_RELAXED);

@@ -98,6 +98,7 @@ int tcqFull(TC_QUEUE_STRUCT const* const queue) {
   (void)queue;
   ring_read_status(&ring);
   watch_owner(planner);
+  watch_outputs();
   link_ok = owner_answers();
   return posted - begun > MOST_QUEUED || ring_free(&ring) < RING_RESERVE;
 }

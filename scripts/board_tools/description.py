@@ -15,7 +15,7 @@ DEVICES = {"ice40": {"hx1k", "hx4k", "hx8k"}, "ecp5": {"12k", "25k", "45k", "85k
 AXIS_ROLES = ("limit_minus", "limit_plus", "home", "drive_fault")
 INPUT_ROLES = {*(f"{axis}_{role}" for axis in "xyzabcuvwe" for role in AXIS_ROLES), "feed_hold", "cycle_start", "tool_setter",
                "spindle_at_speed", "probe"}
-OUTPUT_ROLES = {"m3", "m4", "m7", "m8", "enable", "brake", "charge_pump", "healthy"}
+OUTPUT_ROLES = {"m3", "m4", "m7", "m8", "enable", "brake", "charge_pump", "healthy"} | {f"p{n}" for n in range(16)}
 
 
 class DescriptionError(Exception):

@@ -89,8 +89,8 @@ TEST(Dialect, WordsThatCannotBeLeftOut) {
 }
 
 TEST(Dialect, RefusedWordsHaveAReason) {
-  for (const char* word : {"G68", "M19", "M50 P1", "M51", "M52", "M53", "M62 P0", "M66 P0 L3", "M67 E0", "M68 E0",
-                           "M70", "M72", "M61 Q1", "G7", "G50", "G12 I5", "G65 P1"}) {
+  for (const char* word : {"G68", "M19", "M50 P1", "M51", "M52", "M53", "M66 P0 L3", "M67 E0", "M68 E0", "M70", "M72",
+                           "M61 Q1", "G7", "G50", "G12 I5", "G65 P1"}) {
     EXPECT_THAT(refusal(word), HasSubstr("': ")) << word;
   }
 }

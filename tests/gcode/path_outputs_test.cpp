@@ -1,4 +1,5 @@
 // M3 to M5 and M7 to M9 as outputs that the machine file names.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -8,6 +9,8 @@
 
 namespace trammel::gcode {
 namespace {
+
+using ::testing::HasSubstr;
 
 machine::Machine machine_with_outputs() {
   machine::Machine machine = machine::default_machine();
@@ -68,6 +71,40 @@ TEST(PathOutputs, WordsWithoutAnOutputAreToldAsBefore) {
   EXPECT_EQ(spindle.accepted, (Words{{"S", 1}, {"M4", 1}, {"M7", 1}, {"M8", 1}, {"M9", 1}}))
       << "M4 has none of its own";
   EXPECT_EQ(order_of(spindle.motions), (Order{"1:+2-0", "3:+0-2", "5:+0-2", "7:+0-2", "7:end"})) << "M4 ends M3";
+}
+
+machine::Machine machine_with_numbered_outputs() {
+  machine::Machine machine = machine_with_outputs();
+  machine::apply_override(machine, "outputs.p0=4");
+  machine::apply_override(machine, "outputs.p15=[6, 7]");
+  return machine;
+}
+
+TEST(PathOutputs, NumberedOnesWithTheMotionOrBehindAStop) {
+  const machine::Machine machine = machine_with_numbered_outputs();
+  const auto made = [&](const std::string& text) { return order_of(read_text(text + "\n", machine).motions); };
+  EXPECT_EQ(made("M62 P0"), (Order{"1:+16-0", "1:end"}));
+  EXPECT_EQ(made("M63 P15"), (Order{"1:+0-192", "1:end"}));
+  EXPECT_EQ(made("G1 X1 F60\nM62 P0\nX2\nM63 P0 X3"),
+            (Order{"1:move", "2:+16-0", "3:move", "4:+0-16", "4:move", "4:end"}));
+  EXPECT_EQ(made("M64 P0"), (Order{"1:dwell", "1:+16-0", "1:end"}));
+  EXPECT_EQ(made("M65 P15"), (Order{"1:dwell", "1:+0-192", "1:end"}));
+  EXPECT_EQ(made("M62 P0\nM3\nM2"), (Order{"1:+16-0", "2:+1-32", "3:+0-32805", "3:end"}))
+      << "M2 leaves them, as LinuxCNC";
+}
+
+TEST(PathOutputs, NumberedOnesThatAreRefused) {
+  const machine::Machine machine = machine_with_numbered_outputs();
+  const auto refused = [&](const std::string& text) { return read_text(text + "\n", machine).message(); };
+  EXPECT_THAT(refused("M62 P1"), HasSubstr("M62 P1: [outputs] of the machine file names no output for p1"));
+  EXPECT_THAT(refused("M65 P16"), HasSubstr("names no output for p16"));
+  EXPECT_THAT(refused("M64"), HasSubstr("need P"));
+  EXPECT_THAT(refused("M64 P-1"), HasSubstr("negative"));
+  EXPECT_THAT(refused("M64 P0.5"), HasSubstr("whole"));
+  EXPECT_THAT(refused("M62 P0 M63"), HasSubstr("modal group"));
+  for (const char* line : {"G4 P0 M62", "G64 P0 M62", "G1 F60 X0\nG2 I1 P0 M62", "G82 X0 Z0 R1 P0 M62"}) {
+    EXPECT_THAT(refused(line), HasSubstr("takes P")) << line;
+  }
 }
 
 }  // namespace

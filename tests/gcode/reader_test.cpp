@@ -244,7 +244,7 @@ TEST(Gcode, DwellIsInSeconds) {
   EXPECT_EQ(program.motions[0].seconds, 0.5);
   EXPECT_EQ(refusal("G4"), "1: G4 needs P or S, its seconds");
   EXPECT_EQ(refusal("G4 P-1"), "1: 'P-1' must not be negative");
-  EXPECT_EQ(refusal("G0 P1"), "1: P without a word that takes it: G2, G3, G4, G5, G10, G64, G82 or G89");
+  EXPECT_EQ(refusal("G0 P1"), "1: P without a word that takes it: G2, G3, G4, G5, G10, G64, G82, G89 or M62 to M65");
   EXPECT_EQ(refusal("G61 Q1"), "1: Q without G5, G64, G73 or G83");
   EXPECT_EQ(refusal("G64 P1 Q-1"), "1: 'Q-1' must not be negative");
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "servo_bench.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 
 namespace trammel::linuxcnc {
 namespace {
@@ -82,6 +83,20 @@ TEST(Bridge, AMissingPeriodAtRestIsCountedAndForgotten) {
   for (int n = 1; n <= 100; ++n) bench.period({n * 1.0});
   for (int n = 0; n < 10; ++n) bench.period({100});
   EXPECT_EQ(bench.status().position[0], 100);
+}
+
+// The card is back before LinuxCNC has moved on too far for a line.
+TEST(Bridge, AMotionRightBehindAMissingPeriodAtRestIsFollowed) {
+  ServoBench bench;
+  bench.enable();
+  const std::uint32_t slew = bench.card->parts().registers.read(card_map::reg::kSlew);
+  bench.pass(100 * kServoClocks);
+  for (int n = 1; n <= 900; ++n) bench.period({n * 1.6});
+  for (int n = 0; n < 10; ++n) bench.period({1440});
+  EXPECT_EQ(bench.status().missing, 1U);
+  EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
+  EXPECT_EQ(bench.status().position[0], 1440);
+  EXPECT_EQ(bench.card->parts().registers.read(card_map::reg::kSlew), slew) << "what moves is held on its ramp";
 }
 
 TEST(Bridge, AMissingPeriodInMotionStopsUntilItIsCleared) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-only
-"""In halrun: waits for the link, switches the joints on, lets the generators run, switches off; writes result.json."""
+"""In halrun: plays what the file `scenario` names with the joints on their generators; writes result.json."""
 
 import json
 import pathlib
@@ -47,15 +47,41 @@ def stands():
     """At rest, and the same counts for 0.3 s, since nothing tells when nothing comes."""
     if not pin("at-rest"):
         return False
-    seen = [pin(f"joint.{n:02d}.counts") for n in range(3)]
+    seen = counts()
     time.sleep(0.3)
-    return pin("at-rest") and seen == [pin(f"joint.{n:02d}.counts") for n in range(3)]
+    return pin("at-rest") and seen == counts()
 
 
-def run():
+def counts():
+    return [pin(f"joint.{n:02d}.counts") for n in range(3)]
+
+
+def begin():
     until(lambda: pin("link-ok"), 10, "link-ok")
     enable(True)
     until(caught_up, 10, "following")
+
+
+def end():
+    enable(False)
+    until(stands, 10, "at rest")
+
+
+def hold():
+    """The card stands while the targets go on, and makes the way when it is released."""
+    began = time.monotonic()
+    hal.set_p("trammel.hold", "1")
+    until(lambda: pin("held"), 5, "held")
+    standing = counts()
+    time.sleep(0.05)  # nothing may come
+    result["held"] = [standing, counts()]
+    hal.set_p("trammel.hold", "0")
+    result["hold"] = time.monotonic() - began
+    until(lambda: not pin("held") and counts() != standing, 5, "released")
+
+
+def follow():
+    begin()
     begun = time.monotonic()
     lateness = 0
     while time.monotonic() - begun < 3:  # so much motion; nothing waits for it
@@ -63,17 +89,52 @@ def run():
         time.sleep(0.005)
     result["furthest"] = max(abs(hal.get_value("most.max")), abs(hal.get_value("most.min")))
     result["longest latency"] = lateness
+    hold()
     result["link-ok"], result["fault"] = pin("link-ok"), pin("fault")
+    end()
+
+
+def begin_and_end():
+    begin()
+    end()
+
+
+def index():
+    """An index edge becomes the joint's zero; the other joints keep theirs."""
+    begin()
+    hal.set_p("trammel.joint.00.index-enable", "1")
+    until(lambda: not pin("joint.00.index-enable"), 5, "the index edge")
+    end()
+    result["zeros"] = [pin(f"joint.{n:02d}.counts") - 80 * pin(f"joint.{n:02d}.position-fb") for n in range(3)]
+
+
+def watchdog():
+    """The owner says nothing for longer than the card's watchdog allows; has_bit, written false, clears that."""
+    begin()
+    result["bitten before"] = pin("watchdog.has_bit")
+    pathlib.Path("following").touch()
+    until(lambda: pin("watchdog.has_bit"), 20, "the watchdog's bite")
+    until(lambda: pin("fault"), 5, "fault")
+    result["stop-cause behind the bite"] = pin("stop-cause")
     enable(False)
     until(stands, 10, "at rest")
+    result["bitten"] = [pin("watchdog.has_bit"), pin("fault")]
+    hal.set_p("trammel.watchdog.has_bit", "0")
+    until(lambda: not pin("fault") and not pin("watchdog.has_bit"), 10, "cleared")
+    time.sleep(0.1)  # it must not come back
+    result["cleared"] = [pin("watchdog.has_bit"), pin("fault"), pin("stop-cause")]
+    standing = counts()
+    enable(True)
+    until(lambda: counts() != standing, 5, "it moves again")
+    end()
 
 
 try:
-    run()
+    globals()[pathlib.Path("scenario").read_text().strip()]()
 except Exception as error:  # the test tells it
     result["failure"] = repr(error)
 for name in ("longest-read", "longest-write", "longest-period", "longest-silence", "underrun", "late", "dropped", "refused",
              "packet-error-total", "stop-cause", "read.tmax", "write.tmax"):
     result[name] = pin(name)
-result["counts"] = [pin(f"joint.{n:02d}.counts") for n in range(3)]
+result["counts"] = counts()
 pathlib.Path("result.json").write_text(json.dumps(result))

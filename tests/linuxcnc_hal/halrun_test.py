@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
-"""The component `trammel` in halrun, at 1 kHz: three joints follow signal generators on a simulated card.
+"""The component `trammel` in halrun, at 1 kHz: three joints follow signal generators on a simulated card;
+hold, index edge, watchdog.
 
-    halrun_test.py TRAMMEL MODULES
+    halrun_test.py TRAMMEL MODULES [TEST ...]
 """
 
 import math
+import os
+import signal
 import sys
+import time
 
-from bench import PERIOD, Bench, check, run_tests, stalled
+from bench import PERIOD, USER, Bench, Spoiled, check, run_tests, stalled, wait_until
 from record import Record
 
 TRAMMEL, MODULES = sys.argv[1:3]
@@ -48,18 +52,22 @@ def script(name):
     return text + "start\nloadusr -w python3 drive.py\n"
 
 
+def start(bench, scenario, *arguments):
+    bench.write("scenario", scenario)
+    bench.write("drive.hal", script(bench.name))
+    owner = bench.start_owner(*bench.simulated(), *arguments)
+    bench.start(["halrun", "drive.hal"])
+    return owner
+
+
 def follows():
+    """Three joints on their generators; a hold stands on the path, and nothing of it is lost."""
     with Bench(TRAMMEL, MODULES) as bench:
-        bench.write("follow.hal", script(bench.name))
-        bench.start_owner(*bench.simulated())
-        bench.start(["halrun", "follow.hal"])
-        try:
-            result = bench.finish(40)
-        except RuntimeError as error:
-            return f"{error}"
+        start(bench, "follow")
+        result = bench.finish(40, LEAD)
         late = result["underrun"] or result["refused"] or result["late"] or result["fault"]
         if late and stalled(result, LEAD):
-            return f"the machine stalled: {result}"
+            raise Spoiled(f"{result}")
         check(not late and result["link-ok"], f"{result}")
         # The stated latency is that of the periods ahead, two more, and two that the owner lets stand; what LinuxCNC's
         # thread and the owner paused, as measured, comes on top. The feedback trails by no more than the latency told,
@@ -70,6 +78,7 @@ def follows():
         allowed = FASTEST * (told + 4 * PERIOD * 1e-9 + paused) + 1 / 80
         check(result["furthest"] <= allowed, f"the feedback was {result['furthest']} mm behind, more than {allowed}")
         check(result["furthest"] >= FASTEST * (LEAD - 2) * PERIOD * 1e-9, f"only {result['furthest']} mm behind")
+        check(result["held"][0] == result["held"][1], f"it moved in the hold: {result['held']}")
         record = Record(bench.folder / "record")
         print(record.judge(3000, LEAD))
         net = [record.net.get(axis, 0) for axis in range(3)]
@@ -78,4 +87,62 @@ def follows():
               f"{result['longest latency'] * 1000:.1f} ms; {result}")
 
 
-run_tests([follows], MODULES)
+def linuxcnc_first():
+    """LinuxCNC's rtapi_app, with root's rights, makes the memory as the user who runs it; the owner comes later."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        bench.write("scenario", "begin_and_end")
+        bench.write("drive.hal", script(bench.name))
+        bench.hand_over()
+        bench.start(["halrun", "drive.hal"])
+        wait_until(bench.memory.exists, 20, "the shared memory")
+        found = bench.memory.stat()
+        check(bench.memory.owner() == USER and found.st_mode & 0o777 == 0o600, f"made as {found}")
+        bench.start_owner(*bench.simulated())
+        result = bench.finish(40, LEAD)
+        check(not result["underrun"] and any(result["counts"]), f"{result}")
+
+
+INDEX_AT = 2  # mm
+WORLD = f"""
+[switch.x_index]
+input = 7
+axis = "x"
+above = {INDEX_AT}
+normally = "open"
+release = 0.0125
+bounce = 0
+"""
+
+
+def index():
+    """The index edge, as the card captures it, becomes the joint's zero."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        bench.write("world.toml", bench.text("world.toml") + WORLD)
+        machine = bench.text("machine.toml")
+        check("x_limit_plus = 1" in machine, "machine.toml has no [inputs] to add to")
+        bench.write("machine.toml", machine.replace("x_limit_plus = 1", "x_limit_plus = 1\nx_index = 7"))
+        start(bench, "index")
+        result = bench.finish(40, LEAD)
+        zeros = [round(zero, 6) for zero in result["zeros"]]
+        # The carriage closes the switch, a pulse behind its field. Each ms that the place is late is two pulses.
+        check(0 <= zeros[0] - 80 * INDEX_AT <= 1 and zeros[1:] == [0, 0], f"zeros at pulses {zeros}")
+        print(f"zeros at pulses {zeros}; {result}")
+
+
+def watchdog():
+    """The owner is stopped for longer than the card's watchdog allows: has_bit rises, and clears what it stopped."""
+    with Bench(TRAMMEL, MODULES) as bench:
+        owner = start(bench, "watchdog", "--set", "motion.watchdog=0.4")
+        bench.wait_for("following")
+        os.kill(owner.pid, signal.SIGSTOP)
+        time.sleep(1)  # the injected fault itself
+        os.kill(owner.pid, signal.SIGCONT)
+        result = bench.finish(40)
+        check(not result["bitten before"], "the watchdog had bitten before")
+        check(result["bitten"] == [True, True], f"bitten, fault: {result['bitten']}")
+        check(result["cleared"] == [False, False, 0], f"bitten, fault, cause behind has_bit = 0: {result['cleared']}")
+        print(f"stop-cause {result['stop-cause behind the bite']}; {result}")
+
+
+named = {test.__name__: test for test in (follows, linuxcnc_first, index, watchdog)}
+run_tests([named[name] for name in sys.argv[3:] or named], MODULES)

@@ -2,36 +2,17 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """LinuxCNC's user interface in the tests: plays the scenario that the file `scenario` names, writes result.json."""
 
-import json
 import pathlib
 import time
 
 import hal
 import linuxcnc
 
-command = linuxcnc.command()
-stat = linuxcnc.stat()
-errors = linuxcnc.error_channel()
-result = {"errors": []}
+from linuxcnc_ui import command, idle, mode, play, poll, result, start_program, stat, until, wait_idle
+import linuxcnc_ui
+
 component = hal.component("test-ui")  # hal.get_value() needs one
 component.ready()
-
-
-def poll():
-    stat.poll()
-    while (error := errors.poll()) is not None:
-        result["errors"].append(error[1])
-
-
-def until(condition, seconds, what):
-    end = time.monotonic() + seconds
-    while True:
-        poll()
-        if condition():
-            return
-        if time.monotonic() > end:
-            raise RuntimeError(f"timeout: {what}; errors {result['errors']}")
-        time.sleep(0.002)
 
 
 def pin(name):
@@ -44,19 +25,6 @@ def position():
 
 def at(*place, tolerance=0.02):
     return all(abs(a - b) <= tolerance for a, b in zip(stat.actual_position, place))
-
-
-def idle():
-    return stat.interp_state == linuxcnc.INTERP_IDLE and stat.inpos and stat.queue == 0
-
-
-def wait_idle(seconds=60, what="idle"):
-    until(idle, seconds, what)
-
-
-def mode(value):
-    command.mode(value)
-    command.wait_complete()
 
 
 def switch_on():
@@ -89,21 +57,8 @@ def jog(axis, distance, speed):
 
 
 def mdi(text, seconds=60):
-    mode(linuxcnc.MODE_MDI)
-    command.mdi(text)
-    command.wait_complete(seconds)
-    wait_idle(seconds, text)
+    linuxcnc_ui.mdi(text, seconds)
     standing()
-
-
-def start_program(text):
-    program = pathlib.Path("program.ngc").resolve()
-    program.write_text(text)
-    mode(linuxcnc.MODE_AUTO)
-    command.program_open(str(program))
-    command.wait_complete()
-    command.auto(linuxcnc.AUTO_RUN, 0)
-    until(lambda: not idle(), 10, "started")
 
 
 def prepare():
@@ -177,6 +132,26 @@ def dropped():
     result["program"] = position()
 
 
+def index_and_hold():
+    """X homes to its index mark; then the card holds in a motion, while LinuxCNC's command goes on."""
+    prepare()
+    result["index"] = hal.get_value("trammel.joint.00.index-enable")
+    result["homed at"] = standing()
+    mode(linuxcnc.MODE_MDI)
+    command.mdi("G1 F1200 X60")
+    until(lambda: stat.actual_position[0] > 12, 10, "on the way")
+    hal.set_p("trammel.hold", "1")
+    until(lambda: pin("held"), 5, "held")
+    seen, commanded = [pin("joint.00.counts")], stat.position[0]
+    until(lambda: stat.position[0] > commanded + 2, 5, "the command goes on")  # 2 mm, 0.1 s
+    result["held"] = seen + [pin("joint.00.counts")]
+    hal.set_p("trammel.hold", "0")
+    until(lambda: not pin("held"), 5, "released")
+    wait_idle()
+    standing()
+    result["behind the hold"] = position()
+
+
 def move_far():
     prepare()
     mode(linuxcnc.MODE_MDI)
@@ -215,18 +190,7 @@ def measures():
                  "packet-error-total", "latency", "lead-periods", "stop-cause"):
         result[name] = pin(name)
     result["counts"] = [pin(f"joint.{n:02d}.counts") for n in range(3)]
-
-
-def main():
-    scenario = pathlib.Path("scenario").read_text().strip()
-    try:
-        globals()[scenario]()
-    except Exception as error:  # the test tells it
-        result["failure"] = repr(error)
-    poll()
     result["position"] = position()
-    measures()
-    pathlib.Path("result.json").write_text(json.dumps(result))
 
 
-main()
+play(globals(), lambda: None, measures)

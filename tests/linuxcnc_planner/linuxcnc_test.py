@@ -45,8 +45,8 @@ def require(condition, text):
         raise AssertionError(text)
 
 
-def play(scenario, program="", surface=None, during=None, trammel=None):
-    run = Headless(OWNER, MODULE, scenario, program, surface, trammel).start()
+def play(scenario, program="", surface=None, during=None, trammel=None, **more):
+    run = Headless(OWNER, MODULE, scenario, program, surface, trammel, **more).start()
     try:
         if during:
             run.wait_for("moving")
@@ -88,18 +88,22 @@ def path():
 def whole():
     """The same with the HAL component and `trammel linuxcnc`, against `trammel run`."""
     seen, log = play("program", EVERY_KIND, trammel=TRAMMEL)
-    made = [(float(words[3]), float(words[4])) for words in log if words[0] == "step"]
-    with tempfile.TemporaryDirectory() as folder:
-        program, steps = pathlib.Path(folder) / "program.ngc", pathlib.Path(folder) / "steps"
-        program.write_text(EVERY_KIND)
-        subprocess.run([TRAMMEL, "run", program, "--engine", "model", "--clock", "1000000", "--path-steps", steps],
-                       check=True, stdout=subprocess.DEVNULL)
-        rows = [row.split(",") for row in steps.read_text().splitlines()]
-    axis, direction = (rows[0].index(name) for name in ("axis", "direction"))
-    expected = [(float(row[axis]), float(row[direction])) for row in rows[1:]]
+    made = [(int(words[3]), int(words[4])) for words in log if words[0] == "step"]
+    expected = run_at_the_card(EVERY_KIND)
     require(len(expected) > 5000 and made == expected, f"another path: {len(made)} steps for {len(expected)}, {seen}")
     require(seen["errors"] == [] and seen["position"] == [0, 0, 0], seen)
     return f"{len(expected)} steps; longest call {seen['longest_call']} ns"
+
+
+def whole_rtl():
+    """As whole(), with the Verilated card in lockstep with the model, in real time: at a clock that it keeps up with."""
+    clock = 100_000
+    seen, log = play("program", EVERY_KIND, trammel=TRAMMEL, engine=("rtl", clock))
+    made = [(int(words[3]), int(words[4])) for words in log if words[0] == "step"]
+    expected = run_at_the_card(EVERY_KIND, clock)
+    require(len(expected) > 5000 and made == expected, f"another path: {len(made)} steps for {len(expected)}, {seen}")
+    require(seen["errors"] == [] and seen["position"] == [0, 0, 0], seen)
+    return f"{len(expected)} steps at {clock / 1000:.0f} kHz"
 
 
 def stop_realtime(run):
@@ -195,15 +199,131 @@ def owner_dies():
     return seen["errors"][0].strip()
 
 
+CARD_OUTPUTS = """G21 G90 G17 G64
+F1200
+G0 X1
+G1 X4
+M62 P1
+G1 X8
+M63 P1
+M62 P2
+G1 X12
+M64 P0
+G1 X14
+M65 P0
+G1 X15
+M2
+"""
+
+
+def card_outputs():
+    """M62 to M65 switch the card's outputs that the machine file names, in their places, and LinuxCNC's pins."""
+    named = ["--set", "outputs.p0=3", "--set", "outputs.p1=[1, 2]"]  # P2 switches LinuxCNC's pin alone
+    seen, log = play("card_outputs", CARD_OUTPUTS, trammel=TRAMMEL, arguments=named)
+    at, levels, changes, clocks = 0, 0, [], {}
+    for words in log:
+        if words[0] == "step":
+            at += int(words[4])
+            clocks[at] = int(words[1])
+        elif words[0] == "output" and int(words[2]) != levels:
+            levels = int(words[2])
+            changes.append((levels, at / PULSES))
+    require(changes == [(0b0110, 4), (0, 8), (0b1000, 12), (0, 14)], f"outputs and places in mm: {changes}")
+    # In the motion at 20 mm/s, 625 clocks a pulse, nothing slows down for them; M64 and M65 stop.
+    gaps = {place: clocks[place * PULSES + 1] - clocks[place * PULSES] for place in (4, 8, 12, 14)}
+    require(gaps[4] <= 640 and gaps[8] <= 640 and gaps[12] > 2000 and gaps[14] > 2000, f"clocks between steps: {gaps}")
+    pins = [out for out, _, _ in seen["outputs"]]
+    require(pins == [[0, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 0, 1]], f"LinuxCNC's pins: {pins}")
+    require(seen["errors"] == [] and seen["position"] == [15, 0, 0], seen)
+    return f"switched at {[place for _, place in changes]} mm"
+
+
+def jogs():
+    seen, _ = play("jogs", trammel=TRAMMEL)
+    require(seen["counts"] == [PULSES, PULSES, 0] and seen["errors"] == [], seen)
+    require(seen["position"] == [1, 1, 0], seen)
+    require(max(abs(x - 0.337 * (n + 1)) for n, x in enumerate(seen["jogged"])) < 1 / PULSES, seen)
+    return f"jogged to X {seen['jogged'][-1]:.4f}, then to pulse {seen['counts'][0]}"
+
+
+INCHES = """G20 G90 G17 G64
+F60
+G0 X0.3 Y0.1
+G1 X0.4 Y0.15 Z0.05
+G2 X0.55 Y0.3 I0.15 J0 F90
+G1 X0.1234 Y0.321 Z-0.0456
+M2
+"""
+
+
+def run_at_the_card(program, clock=1_000_000):
+    """Axis and direction of each step, as `trammel run` makes them."""
+    with tempfile.TemporaryDirectory() as folder:
+        file, steps = pathlib.Path(folder) / "program.ngc", pathlib.Path(folder) / "steps"
+        file.write_text(program)
+        subprocess.run([TRAMMEL, "run", file, "--engine", "model", "--clock", str(clock), "--path-steps", steps],
+                       check=True, stdout=subprocess.DEVNULL)
+        rows = [row.split(",") for row in steps.read_text().splitlines()]
+    axis, direction = (rows[0].index(name) for name in ("axis", "direction"))
+    return [(int(row[axis]), int(row[direction])) for row in rows[1:]]
+
+
+def totals(steps):
+    return [(sum(1 for a, _ in steps if a == axis), sum(d for a, d in steps if a == axis)) for axis in range(3)]
+
+
+def inches():
+    """A program in inches on a machine in mm, and on one in inches: each axis's steps and the end of `trammel run`."""
+    expected = totals(run_at_the_card(INCHES))
+    require(expected[0][1] == round(0.1234 * 25.4 * PULSES), f"{expected}")
+    for units, arguments, changes, end in (("mm", (), (), [25.4 * v for v in (0.1234, 0.321, -0.0456)]),
+                                           ("inch", ("--units", "inch"), inch_ini(), [0.1234, 0.321, -0.0456])):
+        seen, log = play("program", INCHES, trammel=TRAMMEL, arguments=arguments, changes=changes)
+        made = totals([(int(words[3]), int(words[4])) for words in log if words[0] == "step"])
+        require(made == expected and seen["errors"] == [], f"LinuxCNC in {units}: {made}, not {expected}; {seen}")
+        pulse = 1 / PULSES if units == "mm" else 1 / PULSES / 25.4
+        require(all(abs(a - b) <= 0.51 * pulse for a, b in zip(seen["position"], end)), f"in {units}: {seen}")
+    return f"{expected[0][0]}, {expected[1][0]} and {expected[2][0]} steps with both"
+
+
+def inch_ini():
+    lengths = [("LINEAR_UNITS = mm", "LINEAR_UNITS = inch"), ("_LINEAR_VELOCITY = 50", "_LINEAR_VELOCITY = 2"),
+               ("_LINEAR_VELOCITY = 400", "_LINEAR_VELOCITY = 15.75"), ("LIMIT = 200", "LIMIT = 7.8"),
+               ("LIMIT = -200", "LIMIT = -7.8"), ("ACCELERATION = 1000", f"ACCELERATION = {1000 / 25.4}"),
+               ("FERROR = 1.0", "FERROR = 0.04"), ("FERROR = 0.5", "FERROR = 0.02")]
+    return lengths + [(f"MAX_VELOCITY = {speed}\n", f"MAX_VELOCITY = {speed / 25.4}\n") for speed in (150, 100)]
+
+
+def named_refusal(seen, words):
+    errors = [error.strip() for error in seen["errors"] if words in error]
+    require(errors, f"no message with {words!r}: {seen}")
+    return errors[0]
+
+
 def refusals():
-    seen, log = play("refusals")
-    require(any("spindle-synchronous" in error for error in seen["errors"]), seen)
+    """Each named as an error of LinuxCNC, and nothing moves."""
+    seen, _ = play("refusals")
+    told = [named_refusal(seen, "spindle-synchronous")]
     require(seen["position"] == [0, 0, 0], seen)
-    return seen["errors"][0].strip()
+    seen, _ = play("refusals_under_way", LONG_WAY)
+    told.append(named_refusal({"errors": seen["reverse"]}, "reverse run"))
+    told.append(named_refusal({"errors": seen["negative"]}, "negative adaptive feed"))
+    require(seen["stood"][0] == seen["stood"][1], f"it moved at a negative adaptive feed: {seen}")
+    require(seen["end"] == [0, 12, 0], f"the program did not come to its end: {seen}")
+    offsets = "setp axis.x.eoffset-enable 1\nsetp axis.x.eoffset-scale 0.001\n"
+    seen, _ = play("external_offset", changes=[("[AXIS_X]\n", "[AXIS_X]\nOFFSET_AV_RATIO = 0.2\n")],
+                   hal=offsets)
+    told.append(named_refusal(seen, "external offsets"))
+    require(seen["path"] == [0, 0], f"the path moved: {seen}")
+    seen, _ = play("one_motion", changes=[("[JOINT_1]\n", "[JOINT_1]\nBACKLASH = 0.1\n")])
+    told.append(named_refusal(seen, "backlash"))
+    seen, _ = play("one_motion", changes=[("KINEMATICS = trivkins", "KINEMATICS = rotatekins")])
+    told.append(named_refusal(seen, "kinematics"))
+    return "; ".join(told)
 
 
 SHORT = (path,)
-LONG = (whole, whole_stalls, stalls, probe, pause_and_abort, outputs, owner_dies, refusals)
+LONG = (whole, whole_rtl, whole_stalls, stalls, probe, pause_and_abort, outputs, card_outputs, jogs, inches, owner_dies, refusals)
 
 
 def main():

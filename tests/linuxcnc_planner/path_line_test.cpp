@@ -86,5 +86,18 @@ TEST(PathLine, Refusals) {
   EXPECT_THROW(first_line(tilted), PathRefusal);
 }
 
+TEST(PathLine, OutputsThatTheMachineFileNames) {
+  machine::Machine machine = machine::default_machine();
+  machine::apply_override(machine, "outputs.p1=3");
+  machine::apply_override(machine, "outputs.p15=[4, 5]");
+  trammel_operation operation = Operations().feed({1}, 10).all.front();
+  operation.outputs = 0x8007;
+  operation.levels = 2;
+  EXPECT_EQ(output_lines(operation, machine), (std::vector<std::string>{"M62 P1", "M63 P15"}));
+  operation.kind = TRAMMEL_SWITCH;
+  EXPECT_EQ(output_lines(operation, machine), (std::vector<std::string>{"M64 P1", "M65 P15"}));
+  EXPECT_EQ(path_line(operation, {}, machine), "");
+}
+
 }  // namespace
 }  // namespace trammel::linuxcnc

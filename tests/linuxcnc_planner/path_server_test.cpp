@@ -228,5 +228,36 @@ TEST(PathServer, RefusesOtherKinematics) {
   EXPECT_THROW(PathBench{machine}, std::invalid_argument);
 }
 
+// In the clock in which the motion before ends, without a stop; M64 and M65 behind one.
+TEST(PathServer, SwitchesOutputsInTheirPlaces) {
+  machine::Machine machine = machine::default_machine();
+  machine::apply_override(machine, "outputs.p1=3");
+  PathBench bench(machine);
+  Operations operations;
+  operations.feed({1}, 20).feed({2}, 20).feed({3}, 20).command(TRAMMEL_SWITCH).feed({4}, 20);
+  const auto switches = [&](std::size_t n, bool on) {
+    operations.all[n].outputs = 6;
+    operations.all[n].levels = on ? 6 : 0;
+  };
+  switches(1, true);
+  switches(2, false);
+  switches(3, true);
+  bench.run(operations.all);
+  EXPECT_EQ(bench.status.refusals, 0U) << bench.status.text;
+  EXPECT_EQ(bench.status.segments_begun, 4U);
+  ASSERT_EQ(bench.steps.outputs.size(), 3U);
+  const auto cycle_of = [&](std::size_t step) { return bench.steps.path.at(step).cycle; };
+  constexpr double kBetweenSteps = kPathClock / (20 * kPathPulses);
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+    const driver::OutputChange& change = bench.steps.outputs[n];
+    EXPECT_EQ(change.levels, n == 1 ? 0 : 8) << n;
+    const std::size_t before = 80 * (n + 1);
+    EXPECT_GT(change.cycle, cycle_of(before - 1)) << n;
+    EXPECT_LT(change.cycle, cycle_of(before)) << n;
+    const double gap = static_cast<double>(cycle_of(before) - cycle_of(before - 1));
+    EXPECT_EQ(gap < 1.1 * kBetweenSteps, n < 2) << n << ": " << gap;
+  }
+}
+
 }  // namespace
 }  // namespace trammel::linuxcnc

@@ -1,56 +1,42 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-only
 """LinuxCNC's user interface in the tests: plays the scenario that the file `scenario` names, writes result.json."""
 
-import json
 import pathlib
 import time
 
 import hal
 import linuxcnc
 
-command = linuxcnc.command()
-stat = linuxcnc.stat()
-errors = linuxcnc.error_channel()
-result = {"errors": []}
+from linuxcnc_ui import command, idle, mdi, mode, play, poll, result, start_program, stat, until, wait_idle
+
 component = hal.component("planner-ui")
 component.newpin("touches", hal.HAL_BIT, hal.HAL_OUT)
 component.newpin("at-speed", hal.HAL_BIT, hal.HAL_OUT)
+component.newpin("adaptive", hal.HAL_FLOAT, hal.HAL_OUT)
+component.newpin("counts", hal.HAL_S32, hal.HAL_OUT)
 component.ready()
+names = {pin["NAME"] for pin in hal.get_info_pins()}
 component["at-speed"] = True
+component["adaptive"] = 1
 hal.connect("planner-ui.at-speed", "at-speed")
 
 
-def poll():
-    stat.poll()
-    while (error := errors.poll()) is not None:
-        result["errors"].append(error[1])
+def connect(pin, signal, kind, target):
+    """Of a scenario: the HAL file runs before this component is there."""
+    hal.new_sig(signal, kind)
+    hal.connect(f"planner-ui.{pin}", signal)
+    hal.connect(target, signal)
 
 
-def until(condition, seconds=30, what=""):
-    end = time.monotonic() + seconds
-    while True:
-        poll()
-        if condition():
-            return
-        if time.monotonic() > end:
-            raise RuntimeError(f"timeout: {what} errors {result['errors']}")
-        time.sleep(0.002)
-
-
-def idle():
-    return stat.interp_state == linuxcnc.INTERP_IDLE and stat.inpos and stat.queue == 0
-
-
-def wait_idle(seconds=60):
-    until(idle, seconds, "idle")
-
-
-def mode(value):
-    command.mode(value)
-    command.wait_complete()
+def linked():
+    """Owner and modules know each other; without the HAL component there is but one link."""
+    links = [pin for pin in ("trammel-planner.link-ok", "trammel.link-ok") if pin in names]
+    return all(hal.get_value(pin) for pin in links)
 
 
 def switch_on():
+    until(linked, 20, "the link to the owner")
     command.state(linuxcnc.STATE_ESTOP_RESET)
     command.wait_complete()
     command.state(linuxcnc.STATE_ON)
@@ -58,21 +44,6 @@ def switch_on():
     mode(linuxcnc.MODE_MANUAL)
     command.home(-1)
     until(lambda: all(stat.homed[:3]), 20, "homed")
-
-
-def mdi(text, seconds=60):
-    mode(linuxcnc.MODE_MDI)
-    command.mdi(text)
-    command.wait_complete(seconds)
-    wait_idle(seconds)
-
-
-def start_program():
-    mode(linuxcnc.MODE_AUTO)
-    command.program_open(str(pathlib.Path("program.ngc").resolve()))
-    command.wait_complete()
-    command.auto(linuxcnc.AUTO_RUN, 0)
-    until(lambda: not idle(), 10, "started")
 
 
 def run_program(seconds=90):
@@ -159,6 +130,35 @@ def outputs():
     result["outputs"] = seen
 
 
+def card_outputs():
+    start_program()
+    seen = []
+    while not idle():
+        poll()
+        now = [list(stat.dout[:3]), 0]
+        if not seen or seen[-1][:2] != now:
+            seen.append([*now, list(stat.position[:2])])
+        time.sleep(0.002)
+    result["outputs"] = seen
+
+
+def jogs():
+    """Jogs end between two pulses; the motions behind them begin on one, and nothing adds up."""
+    for n in range(5):
+        mode(linuxcnc.MODE_MANUAL)
+        command.teleop_enable(1)
+        command.wait_complete()
+        start = stat.position[0]
+        command.jog(linuxcnc.JOG_INCREMENT, 0, 0, 3, 0.337)
+        until(lambda: abs(stat.position[0] - start - 0.337) < 1e-5 and stat.axis[0]["velocity"] == 0 and stat.inpos, 20,
+              "jogged")
+        until(lambda: abs(stat.actual_position[0] - stat.position[0]) < 0.02, 20, "the card is there")
+        result.setdefault("jogged", []).append(stat.position[0])
+        mdi(f"G1 F600 Y{n}")
+    mdi("G0 X1 Y1 Z0")
+    result["counts"] = [hal.get_value(f"trammel.joint.{n:02d}.counts") for n in range(3)]
+
+
 def owner_dies():
     start_program()
     until(lambda: stat.position[1] > 0.5, 20, "moving")
@@ -173,20 +173,54 @@ def refusals():
     result["position"] = list(stat.position[:3])
 
 
-def main():
-    scenario = pathlib.Path("scenario").read_text().strip()
-    time.sleep(0.2)
-    try:
-        switch_on()
-        globals()[scenario]()
-    except Exception as error:  # the test tells it
-        result["failure"] = repr(error)
+def refusals_under_way():
+    """A reverse run is refused, and the path goes on; at a negative adaptive feed it stands."""
+    connect("adaptive", "adaptive", hal.HAL_FLOAT, "motion.adaptive-feed")
+    mdi("M52 P1")
+    start_program()
+    until(lambda: stat.position[1] > 1, 20, "moving")
+    command.auto(linuxcnc.AUTO_PAUSE)
+    until(lambda: stat.paused and stat.current_vel < 1e-6, 20, "paused")
+    command.auto(linuxcnc.AUTO_REVERSE)
+    until(lambda: result["errors"], 10, "a message of the reverse run")
+    result["reverse"], result["errors"] = list(result["errors"]), []
+    command.auto(linuxcnc.AUTO_FORWARD)
+    command.auto(linuxcnc.AUTO_RESUME)
+    at = stat.position[1]
+    until(lambda: stat.position[1] > at + 0.5, 20, "resumed")
+    component["adaptive"] = -0.5
+    until(lambda: result["errors"], 10, "a message of the adaptive feed")
+    result["negative"], result["errors"] = list(result["errors"]), []
+    until(lambda: stat.current_vel < 1e-6, 20, "standing")
+    held = list(stat.position[:3])
+    time.sleep(0.3)  # nothing may come
     poll()
+    result["stood"] = [held, list(stat.position[:3])]
+    component["adaptive"] = 1
+    wait_idle(90)
+    result["end"] = [round(value, 6) for value in stat.position[:3]]
+
+
+def external_offset():
+    connect("counts", "offset", hal.HAL_S32, "axis.x.eoffset-counts")
+    component["counts"] = 1000  # 1 mm
+    until(lambda: abs(hal.get_value("axis.x.eoffset") - 1) < 1e-6, 20, "the offset is applied")
+    one_motion()
+    result["path"] = [round(value, 6) for value in stat.position[1:3]]
+
+
+def one_motion():
+    mode(linuxcnc.MODE_MDI)
+    command.mdi("G0 Y1")
+    until(lambda: result["errors"], 10, "a message")
+
+
+def measures():
     result["position"] = list(stat.position[:3])
     result["longest_call"] = hal.get_value("trammel-planner.longest-call")
     result["longest_cycle"] = hal.get_value("trammel-planner.longest-cycle")
     result["stale"] = hal.get_value("trammel-planner.stale-copies")
-    pathlib.Path("result.json").write_text(json.dumps(result))
 
 
-main()
+time.sleep(0.2)
+play(globals(), switch_on, measures)

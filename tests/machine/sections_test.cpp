@@ -35,6 +35,10 @@ TEST(MachineFile, Outputs) {
   }
   EXPECT_THAT(error("m5 = 1"), HasSubstr("unknown entry outputs.m5"));
   EXPECT_THAT(error("m3 = 1\nm7 = 1"), HasSubstr("output 1 is named for the spindle (m3, m4) and for coolant"));
+  EXPECT_THAT(error("m3 = 1\np4 = 1"),
+              HasSubstr("output 1 is named for the spindle or for coolant and for M62 to M65"));
+  EXPECT_THAT(error("p16 = 1"), HasSubstr("unknown entry outputs.p16"));
+  EXPECT_EQ(parse_machine(default_machine_text() + "[outputs]\np0 = 7\np15 = [0, 7]\n", "m").outputs.numbered[15], 129);
   EXPECT_THAT(override_error("outputs.m9=1"), HasSubstr("unknown entry outputs.m9"));
 }
 

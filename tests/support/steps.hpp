@@ -13,6 +13,7 @@ class Steps final : public driver::StepSink {
  public:
   void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
   void path_step(const driver::PathStep& step) override { path.push_back(step); }
+  void outputs_changed(const driver::OutputChange& change) override { outputs.push_back(change); }
 
   // Where the pins have brought an axis up to a cycle, from where it was at first.
   std::int64_t position(std::size_t axis, std::uint64_t cycle = ~std::uint64_t{0}) const {
@@ -23,6 +24,7 @@ class Steps final : public driver::StepSink {
 
   std::vector<driver::PinStep> pins;
   std::vector<driver::PathStep> path;
+  std::vector<driver::OutputChange> outputs;
 };
 
 }  // namespace trammel::test

@@ -467,4 +467,28 @@ TEST_F(Component, HoldsItsLockFromLoadingToUnloading) {
   EXPECT_TRUE(lock());
 }
 
+// The memory outlives its owner: after an update, an owner that is no more does not keep LinuxCNC from starting.
+TEST_F(Component, ARegionThatAnotherVersionHasLeftBeginsAnew) {
+  rtapi_app_exit();
+  loaded_ = false;
+  region_->version_owner = TRAMMEL_REGION_VERSION + 1;
+  region_->period_head = 77;
+  const int owner = open(path_.c_str(), O_RDWR);
+  ASSERT_GE(owner, 0);
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = TRAMMEL_LOCK_OWNER;
+  lock.l_len = 1;
+  ASSERT_EQ(fcntl(owner, F_OFD_SETLK, &lock), 0);
+  EXPECT_EQ(rtapi_app_main(), -EPROTO) << "that owner lives";
+  EXPECT_EQ(region_->period_head, 77U);
+  close(owner);
+  ASSERT_EQ(rtapi_app_main(), 0) << stub::messages();
+  loaded_ = true;
+  EXPECT_EQ(region_->version_owner, 0U);
+  EXPECT_EQ(region_->version_hal, TRAMMEL_REGION_VERSION);
+  EXPECT_EQ(region_->period_head, 0U);
+}
+
 }  // namespace

@@ -25,6 +25,9 @@ constexpr int kSpindleOff = 50;
 constexpr int kMist = 70;
 constexpr int kFlood = 80;
 constexpr int kCoolantOff = 90;
+constexpr int kOnWithMotion = 620;
+constexpr int kOnAtRest = 640;
+constexpr int kOffAtRest = 650;
 
 // Errors of values, which another outcome of a probe would change.
 bool is_of_values(ErrorCode code) {
@@ -70,7 +73,7 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
   set_power(motions, before);
   const std::optional<int> stopping = words.code(Group::kStopping);
   if (stopping == 20 || stopping == 300) {
-    change_outputs(0, machine_.outputs.of_words(), motions);
+    change_outputs(0, machine_.outputs.spindle() | machine_.outputs.coolant(), motions);
     modes_.spindle = kSpindleOff;
     end(line, motions);
     return Outcome::kEnded;
@@ -97,6 +100,9 @@ bool Interpreter::set_modes(const Context& context) {
     stop(context.motions, 0);
   }
   switch_outputs(context);
+  if (words.code(Group::kNumbered) && !switch_numbered(context)) {
+    return false;
+  }
   if (modes_.spindle != spindle_before || modes_.spindle_speed != speed_before) spin_up(context.motions);
   if (const auto system = words.code(Group::kCoordinates)) {
     offsets_.select(static_cast<std::size_t>(*system <= 590 ? (*system - 540) / 10 : *system - 590 + 5));
@@ -187,6 +193,11 @@ bool Interpreter::switches(int number) const {
       return outputs.m8 != 0;
     case 9:
       return outputs.coolant() != 0;
+    case 62:
+    case 63:
+    case 64:
+    case 65:
+      return true;  // or it is refused
     default:
       return false;
   }
@@ -208,6 +219,24 @@ void Interpreter::switch_outputs(const Context& context) {
     if (coolant == kCoolantOff) clear = static_cast<std::uint16_t>(clear | outputs.coolant());
   }
   change_outputs(set, clear, context.motions);
+}
+
+// LinuxCNC's outputs by number: in their place on the path, or behind a stop.
+bool Interpreter::switch_numbered(const Context& context) {
+  const int word = *context.words.code(Group::kNumbered);
+  const double number = *context.words.letter('P');
+  const auto& numbered = machine_.outputs.numbered;
+  const std::uint16_t outputs =
+      number < static_cast<double>(numbered.size()) ? numbered[static_cast<std::size_t>(number)] : 0;
+  if (outputs == 0) {
+    return context.problem.set(ErrorCode::kNoOutput,
+                               fmt::format("{} P{:.10g}: [outputs] of the machine file names no output for p{:.10g}",
+                                           name_of('M', word), number, number));
+  }
+  if (word == kOnAtRest || word == kOffAtRest) stop(context.motions, 0);
+  const bool on = word == kOnWithMotion || word == kOnAtRest;
+  change_outputs(on ? outputs : 0, on ? 0 : outputs, context.motions);
+  return true;
 }
 
 // A spindle takes its time to a new speed, and cutting waits for it.

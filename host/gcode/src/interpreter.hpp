@@ -106,6 +106,7 @@ class Interpreter final : public Predefined {
   bool defer(const Context& context, std::size_t motions_before);
   bool depends(const WordSet& words) const;
   void switch_outputs(const Context& context);
+  bool switch_numbered(const Context& context);
   void spin_up(LineMotions& motions);
   bool laser_may_burn(MotionKind kind) const;
   void set_power(LineMotions& motions, std::size_t first) const;

@@ -23,7 +23,6 @@ constexpr std::string_view kHoming = "there is no homing: bring the axes to thei
 constexpr std::string_view kUnits = "units are G20 and G21; a lathe's cycles are not there";
 constexpr std::string_view kOffsets = "an offset of a firmware: write G10 L2 or G92";
 constexpr std::string_view kOverrides = "the operator has the overrides";
-constexpr std::string_view kOutputs = "outputs are switched by M3 to M9, as [outputs] of the machine file names them";
 constexpr std::string_view kModes = "modes are not stored: write the words that set them";
 constexpr std::string_view kSubroutines = "subroutines are not supported: let the CAM program write their lines out";
 
@@ -98,10 +97,6 @@ constexpr OtherWord kWords[] = {
     {'M', 520, T::kRefused, kOverrides},
     {'M', 530, T::kRefused, kOverrides},
     {'M', 610, T::kNeverLeftOut, "T and M6 name the tool in the spindle"},
-    {'M', 620, T::kRefused, kOutputs},
-    {'M', 630, T::kRefused, kOutputs},
-    {'M', 640, T::kRefused, kOutputs},
-    {'M', 650, T::kRefused, kOutputs},
     {'M', 660, T::kRefused, "no line waits for an input; G38.2 moves until one changes"},
     {'M', 670, T::kRefused, "there are no analogue outputs"},
     {'M', 680, T::kRefused, "there are no analogue outputs"},

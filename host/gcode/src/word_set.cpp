@@ -15,10 +15,11 @@ struct Code {
   char letter;
   int tenths;
   Group group;
-  bool effect;  // false: accepted, listed in the summary; M3 to M9 where they switch no output
+  bool effect;  // false: accepted, listed in the summary; M3 to M9 where they switch no output; M62 to M65 are refused
+                // there
 };
 
-constexpr std::array<Code, 76> kCodes = {{
+constexpr std::array<Code, 80> kCodes = {{
     {'G', 0, Group::kMotion, true},        {'G', 10, Group::kMotion, true},       {'G', 20, Group::kMotion, true},
     {'G', 30, Group::kMotion, true},       {'G', 40, Group::kNonModal, true},     {'G', 50, Group::kMotion, true},
     {'G', 51, Group::kMotion, true},       {'G', 80, Group::kDiameter, true},     {'G', 100, Group::kNonModal, true},
@@ -43,8 +44,9 @@ constexpr std::array<Code, 76> kCodes = {{
     {'M', 0, Group::kStopping, false},     {'M', 10, Group::kStopping, false},    {'M', 20, Group::kStopping, true},
     {'M', 300, Group::kStopping, true},    {'M', 30, Group::kSpindle, false},     {'M', 40, Group::kSpindle, false},
     {'M', 50, Group::kSpindle, false},     {'M', 60, Group::kToolChange, false},  {'M', 70, Group::kCoolant, false},
-    {'M', 80, Group::kCoolant, false},     {'M', 90, Group::kCoolant, false},     {'M', 820, Group::kExtruder, true},
-    {'M', 830, Group::kExtruder, true},
+    {'M', 80, Group::kCoolant, false},     {'M', 90, Group::kCoolant, false},     {'M', 620, Group::kNumbered, false},
+    {'M', 630, Group::kNumbered, false},   {'M', 640, Group::kNumbered, false},   {'M', 650, Group::kNumbered, false},
+    {'M', 820, Group::kExtruder, true},    {'M', 830, Group::kExtruder, true},
 }};
 
 // Place in kCodes of every G and M word, by its tenths.

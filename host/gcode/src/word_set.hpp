@@ -34,6 +34,7 @@ enum class Group {
   kStopping,     // M0 M1 M2 M30
   kSpindle,      // M3 M4 M5
   kCoolant,      // M7 M8 M9
+  kNumbered,     // M62 M63 M64 M65
   kExtruder,     // M82 M83
   kRetract,      // G98 G99
   kToolChange,   // M6

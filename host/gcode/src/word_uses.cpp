@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 #include "codes.hpp"
@@ -21,11 +22,12 @@ struct Takers {
   bool path_tolerance = false;
   bool arc = false;
   bool makes_arc = false;
+  bool numbered = false;  // M62 to M65
 
   bool takes(char letter) const {
     switch (letter) {
       case 'P':
-        return action == code::kDwell || action == code::kSet || path_tolerance || makes_arc ||
+        return numbered || action == code::kDwell || action == code::kSet || path_tolerance || makes_arc ||
                motion == code::kSpline || (motion && dwells_below(*motion));
       case 'Q':
         return path_tolerance || motion == code::kSpline || (motion && pecks(*motion));
@@ -47,7 +49,7 @@ struct Takers {
 const char* takers_of(char letter) {
   switch (letter) {
     case 'P':
-      return "P without a word that takes it: G2, G3, G4, G5, G10, G64, G82 or G89";
+      return "P without a word that takes it: G2, G3, G4, G5, G10, G64, G82, G89 or M62 to M65";
     case 'Q':
       return "Q without G5, G64, G73 or G83";
     case 'L':
@@ -57,6 +59,23 @@ const char* takers_of(char letter) {
     default:
       return nullptr;
   }
+}
+
+// The output's number has the line's P: no other word of the line may take it.
+bool check_numbered(const WordSet& words, const Takers& takers, Problem& problem) {
+  const std::string name = name_of('M', *words.code(Group::kNumbered));
+  const auto number = words.letter('P');
+  if (!number) return missing(problem, "M62 to M65 need P, the output's number");
+  const bool moves = words.has_axis_words() && takers.motion;
+  if (takers.action == code::kDwell || takers.action == code::kSet || takers.path_tolerance || takers.makes_arc ||
+      (moves && (takers.motion == code::kSpline || dwells_below(*takers.motion)))) {
+    return unused(problem, fmt::format("{} beside another word that takes P: give it a line of its own", name));
+  }
+  if (words.later('P')) return problem.set(ErrorCode::kDependsOnProbe, name + ": P cannot depend on a probe");
+  if (*number != std::trunc(*number)) {
+    return problem.set(ErrorCode::kNotWhole, fmt::format("'P{:.10g}' must be a whole number", *number));
+  }
+  return true;
 }
 
 bool check_needs(const WordSet& words, const Takers& takers, Problem& problem) {
@@ -70,7 +89,7 @@ bool check_needs(const WordSet& words, const Takers& takers, Problem& problem) {
       return problem.set(ErrorCode::kNegative, fmt::format("'{}{:.10g}' must not be negative", letter, *value));
     }
   }
-  return true;
+  return !words.code(Group::kNumbered) || check_numbered(words, takers, problem);
 }
 
 }  // namespace
@@ -93,6 +112,7 @@ bool check_uses(const WordSet& words, std::optional<int> modal, Problem& problem
   }
   takers.motion = otherwise ? std::nullopt : motion ? motion : modal;
   takers.path_tolerance = words.code(Group::kPathControl) == 640;
+  takers.numbered = words.code(Group::kNumbered).has_value();
   takers.arc = takers.motion == code::kArcClockwise || takers.motion == code::kArcCounterClockwise;
   const bool centre = words.letter('I') || words.letter('J') || words.letter('K') || words.letter('R');
   takers.makes_arc = takers.arc && (motion || centre || words.has_axis_words());

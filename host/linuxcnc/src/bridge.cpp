@@ -163,6 +163,17 @@ void Bridge::set_hold(bool hold) {
   holding_ = hold;
 }
 
+// Behind an under-run at rest. The ratio's way back is for what moves: LinuxCNC would have moved on meanwhile, too far
+// for a line.
+void Bridge::come_back_at_once() {
+  constexpr int kLooks = 100;  // of a card that takes 8 clocks
+  const std::uint32_t slew = card_.parts().registers.read(card_map::reg::kSlew);
+  card_.set_slew_time(std::chrono::nanoseconds(0));
+  for (int looks = 0; card_.read_snapshot().ratio != driver::Card::kFullRatio && looks < kLooks; ++looks) {
+  }
+  card_.parts().registers.write(card_map::reg::kSlew, slew, "slew");
+}
+
 // Where the machine is enabled, nothing begins before it was disabled.
 void Bridge::clear() {
   if (!stopped_) return;
@@ -197,6 +208,7 @@ void Bridge::guarded(const std::function<void()>& call) {
     if (!stream_.is_open() || !stream_.at_rest() || inside_) return stopped_by(TRAMMEL_CAUSE_OTHER, error.what());
     ++status_.missing;
     close(true);
+    come_back_at_once();
     tell(fmt::format("under-run at rest, nothing was lost: {}", error.what()));
   } catch (const driver::Error& error) {
     stopped_by(TRAMMEL_CAUSE_OTHER, error.what());
@@ -215,7 +227,10 @@ void Bridge::stopped_by_fault(std::uint32_t faults) {
     ++status_.missing;
     card_.clear_faults();
     card_.parts().registers.write(card_map::reg::kStreaming, 0, "missing period");
-    if (resting && !stopped_) return tell("under-run at rest: no period came in time; nothing was lost");
+    if (resting && !stopped_) {
+      come_back_at_once();
+      return tell("under-run at rest: no period came in time; nothing was lost");
+    }
   }
   set_stopped(cause_of(faults), at, why);
 }

@@ -133,9 +133,21 @@ std::string path_modes(const trammel_operation& operation, PathUnits units) {
   return (units == PathUnits::kInches ? "G20" : "G21") + path_control(operation);
 }
 
+std::vector<std::string> output_lines(const trammel_operation& operation, const machine::Machine& machine) {
+  const bool at_rest = operation.kind == TRAMMEL_SWITCH;
+  std::vector<std::string> lines;
+  for (std::size_t n = 0; n < machine.outputs.numbered.size(); ++n) {
+    if ((operation.outputs >> n & 1U) == 0 || machine.outputs.numbered[n] == 0) continue;
+    const bool on = (operation.levels >> n & 1U) != 0;
+    lines.push_back(fmt::format("{} P{}", at_rest ? on ? "M64" : "M65" : on ? "M62" : "M63", n));
+  }
+  return lines;
+}
+
 std::string path_line(const trammel_operation& operation, const Pose& from, const machine::Machine& machine) {
   if (operation.kind == TRAMMEL_LINE) return line_motion(operation, from, machine);
   if (operation.kind == TRAMMEL_ARC) return arc_motion(operation, from, machine);
+  if (operation.kind == TRAMMEL_SWITCH) return "";
   throw PathRefusal("an operation that is no motion");
 }
 

@@ -76,6 +76,8 @@ void PathLines::take(const trammel_operation& operation) {
     ended_ = true;
     return;
   }
+  for (std::string& line : output_lines(operation, server_.machine_)) pending_.push_back(std::move(line));
+  if (operation.kind == TRAMMEL_SWITCH) return;
   const std::string modes = path_modes(operation, server_.units_);
   if (modes != modes_) pending_.push_back(modes);
   modes_ = modes;

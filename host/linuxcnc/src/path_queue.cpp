@@ -28,6 +28,7 @@ void PathQueue::take_one(const trammel_operation& operation) {
   switch (operation.kind) {
     case TRAMMEL_LINE:
     case TRAMMEL_ARC:
+    case TRAMMEL_SWITCH:
       if (!refusing_) segments_.push_back(operation);
       return;
     case TRAMMEL_PAUSE:

@@ -24,6 +24,8 @@ const char* name_of_operation(std::uint32_t kind) {
       return "a clear";
     case TRAMMEL_SET_POSE:
       return "a pose";
+    case TRAMMEL_SWITCH:
+      return "outputs";
     default:
       return "an unknown operation";
   }

@@ -115,6 +115,8 @@ void check_outputs(const std::string& where, const MachineOutputs& outputs) {
     refuse(fmt::format("{}: output {} is named for {}", where, output, named));
   };
   check(unsigned{outputs.spindle()} & outputs.coolant(), "the spindle (m3, m4) and for coolant (m7, m8)");
+  check((unsigned{outputs.spindle()} | outputs.coolant()) & outputs.all_numbered(),
+        "the spindle or for coolant and for M62 to M65 (p0 to p15)");
   const unsigned others = unsigned{outputs.of_words()} | outputs.safe();
   check(outputs.roles() & others,
         "the drives or the card (enable, brake, charge_pump, healthy) and for the program, which does not switch it");

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +63,14 @@ constexpr std::array<FaultName, 9> kFaultNames = {{
     {"step", card_map::field::kFaultStep},
     {"path_incomplete", card_map::field::kFaultPathIncomplete},
 }};
+
+// "p7": what M62 to M65 switch with P7; none where the key is another one.
+std::optional<std::size_t> numbered_of(const std::string& key) {
+  for (std::size_t n = 0; n < kMaxOutputs; ++n) {
+    if (key == fmt::format("p{}", n)) return n;
+  }
+  return std::nullopt;
+}
 
 constexpr const char* kEnableManual = "enable_manual";
 constexpr const char* kEnableAxes = "enable_axes";
@@ -123,6 +133,7 @@ std::string axes_of(const Source& source, const Machine& machine, const std::str
 std::vector<std::string> output_keys() {
   std::vector<std::string> names;
   for (const OutputEntry& entry : kOutputEntries) names.emplace_back(entry.name);
+  for (std::size_t n = 0; n < kMaxOutputs; ++n) names.push_back(fmt::format("p{}", n));
   for (const OutputNumber& entry : kOutputNumbers) names.emplace_back(entry.name);
   names.insert(names.end(), {"disable_on", kEnableManual, kEnableAxes, kOnEmergencyStop});
   return names;
@@ -145,6 +156,8 @@ void set_output(const Source& source, Machine& machine, const std::string& key, 
     outputs.*number_entry->member = number(source, path, value, number_entry->range);
   } else if (entry != kOutputEntries.end()) {
     outputs.*entry->member = output_bits(source, path, value);
+  } else if (const auto n = numbered_of(key)) {
+    outputs.numbered[*n] = output_bits(source, path, value);
   } else if (key == "disable_on") {
     outputs.disable_on = faults_of(source, path, value);
   } else if (key == kEnableManual) {

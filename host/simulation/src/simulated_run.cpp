@@ -1,5 +1,7 @@
 #include "trammel/simulation/simulated_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -18,13 +20,14 @@ std::vector<OutputResult> outputs_of(const machine::MachineOutputs& named, const
   std::vector<OutputResult> result;
   for (unsigned n = 0; n < machine::kMaxOutputs; ++n) {
     OutputResult output{n, {}, recorder.outputs()[n]};
-    const auto word = [&](const char* name, std::uint16_t outputs) {
-      if ((outputs >> n & 1) != 0) output.words.emplace_back(name);
+    const auto word = [&](std::string name, std::uint16_t outputs) {
+      if ((outputs >> n & 1) != 0) output.words.push_back(std::move(name));
     };
     word("M3", named.m3);
     word("M4", named.m4);
     word("M7", named.m7);
     word("M8", named.m8);
+    for (std::size_t p = 0; p < named.numbered.size(); ++p) word(fmt::format("M62 P{}", p), named.numbered[p]);
     if (!output.words.empty()) result.push_back(output);
   }
   return result;

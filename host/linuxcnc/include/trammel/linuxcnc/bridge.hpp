@@ -62,6 +62,7 @@ class Bridge {
   void waiting(const std::function<void()>& call);
   void set_hold(bool hold);
   void clear();
+  void come_back_at_once();
   // Calls `call`, and makes what it throws the cause of a stop.
   void guarded(const std::function<void()>& call);
   void stopped_by_fault(std::uint32_t faults);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "trammel/gcode/motion.hpp"
 #include "trammel/linuxcnc/shared_region.h"
@@ -32,9 +33,12 @@ std::string path_number(double value);
 // Units and path control of the operation, which hold until others are given: "G21 G64 P0.05". A line of its own, since
 // P means something else beside an arc.
 std::string path_modes(const trammel_operation& operation, PathUnits units);
+// Outputs that the operation switches before it moves, "M62 P3", each on a line of its own; those that the machine file
+// does not name switch nothing at the card.
+std::vector<std::string> output_lines(const trammel_operation& operation, const machine::Machine& machine);
 // Plane, motion, axis words, feed; "" where nothing moves. `from`: where the operation begins, which is where the one
-// before ended. Throws PathRefusal for an operation that is neither TRAMMEL_LINE nor TRAMMEL_ARC, one that moves an
-// axis the machine lacks, a feed of 0, an arc outside the main planes.
+// before ended. Throws PathRefusal for an operation that is no TRAMMEL_LINE, TRAMMEL_ARC or TRAMMEL_SWITCH, one that
+// moves an axis the machine lacks, a feed of 0, an arc outside the main planes.
 std::string path_line(const trammel_operation& operation, const Pose& from, const machine::Machine& machine);
 
 bool is_probe(const trammel_operation& operation);

@@ -35,16 +35,16 @@
 #define TRAMMEL_REGION_FOLDER "/dev/shm"
 #define TRAMMEL_REGION_PREFIX "trammel-linuxcnc."
 /* Raised with every change of this layout. Each side writes it when it attaches, and leaves another version alone. */
-#define TRAMMEL_REGION_VERSION 3u
+#define TRAMMEL_REGION_VERSION 4u
 
 enum { TRAMMEL_LOCK_OWNER = 0, TRAMMEL_LOCK_HAL = 1, TRAMMEL_LOCK_PLANNER = 2 };
 
 enum {
-  TRAMMEL_JOINTS = 8,          /* most that a card has */
-  TRAMMEL_POSE = 9,            /* X Y Z A B C U V W */
-  TRAMMEL_PERIODS = 256,       /* slots: at 1 kHz the owner may sleep for 250 ms before one is lost */
-  TRAMMEL_OPERATIONS = 2048,   /* slots: LinuxCNC's own planner queues 2,000 segments */
-  TRAMMEL_SEGMENT_OUTPUTS = 8, /* digital outputs that a segment may switch */
+  TRAMMEL_JOINTS = 8,        /* most that a card has */
+  TRAMMEL_POSE = 9,          /* X Y Z A B C U V W */
+  TRAMMEL_PERIODS = 256,     /* slots: at 1 kHz the owner may sleep for 250 ms before one is lost */
+  TRAMMEL_OPERATIONS = 2048, /* slots: LinuxCNC's own planner queues 2,000 segments */
+  TRAMMEL_OUTPUTS = 16,      /* digital outputs of LinuxCNC, P of M62 to M65, that the card may have */
   TRAMMEL_TRIES = 4
 };
 
@@ -148,9 +148,10 @@ enum trammel_operation_kind {
   TRAMMEL_ARC = 2,   /* helix: centre, normal, turns */
   TRAMMEL_PAUSE = 3, /* hold on the path */
   TRAMMEL_RESUME = 4,
-  TRAMMEL_ABORT = 5,   /* ramp on the path, then drop what is queued */
-  TRAMMEL_CLEAR = 6,   /* drop what is queued at once, as after a fault */
-  TRAMMEL_SET_POSE = 7 /* `end`: the pose that LinuxCNC takes the machine to stand at; only at rest */
+  TRAMMEL_ABORT = 5,    /* ramp on the path, then drop what is queued */
+  TRAMMEL_CLEAR = 6,    /* drop what is queued at once, as after a fault */
+  TRAMMEL_SET_POSE = 7, /* `end`: the pose that LinuxCNC takes the machine to stand at; only at rest */
+  TRAMMEL_SWITCH = 8    /* `outputs` and `levels` behind the motions before, which end at rest: M64, M65 */
 };
 
 enum { TRAMMEL_EXACT_STOP = 0, TRAMMEL_EXACT_PATH = 1, TRAMMEL_BLEND = 2 }; /* G61.1, G61, G64 P */
@@ -163,8 +164,8 @@ struct trammel_operation {
   int32_t turns;          /* of an arc: as LinuxCNC counts them, negative for clockwise */
   uint32_t blending;      /* TRAMMEL_EXACT_STOP ... */
   uint32_t scale_by_feed; /* the feed override acts */
-  uint32_t outputs;       /* bit n: digital output n is switched when the segment begins */
-  uint32_t levels;        /* their levels */
+  uint32_t outputs;       /* bit n: digital output n is switched in its place before the motion */
+  uint32_t levels;        /* their levels; outputs that the machine file does not name are LinuxCNC's pins alone */
   uint32_t probe_away;    /* motion 5: until the probe is free, else until it touches */
   double end[TRAMMEL_POSE];
   double centre[3], normal[3];

@@ -92,13 +92,16 @@ struct MotionSettings {
 };
 
 // Outputs of the card that words of a program switch on, bit n: output n; the table [outputs]. Words that the table
-// does not name switch none. M3 and M4 switch off what the other has, M5 both; M9 switches off what M7 and M8 have.
+// does not name switch none, and M62 to M65 are refused then. M3 and M4 switch off what the other has, M5 both; M9
+// switches off what M7 and M8 have.
 inline constexpr unsigned kMaxOutputs = 16;
 struct MachineOutputs {
   std::uint16_t m3 = 0;  // spindle clockwise
   std::uint16_t m4 = 0;  // and counter-clockwise
   std::uint16_t m7 = 0;  // mist
   std::uint16_t m8 = 0;  // flood
+  // Of M62 to M65, by their P.
+  std::array<std::uint16_t, kMaxOutputs> numbered{};
 
   // Outputs whose pulses S sets; M3 and M4 switch them on, too. The table [spindle]; without it S has no effect.
   std::uint16_t pwm = 0;
@@ -132,7 +135,12 @@ struct MachineOutputs {
 
   std::uint16_t spindle() const { return m3 | m4 | pwm; }
   std::uint16_t coolant() const { return m7 | m8; }
-  std::uint16_t of_words() const { return spindle() | coolant(); }
+  std::uint16_t all_numbered() const {
+    std::uint16_t all = 0;
+    for (const std::uint16_t outputs : numbered) all = static_cast<std::uint16_t>(all | outputs);
+    return all;
+  }
+  std::uint16_t of_words() const { return spindle() | coolant() | all_numbered(); }
   std::uint16_t roles() const { return enable | brake | charge_pump | healthy; }
   std::uint16_t safe_at_cause() const {
     return static_cast<std::uint16_t>(off_at_cause | on_at_cause | (laser ? pwm : 0));
