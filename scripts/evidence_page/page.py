@@ -13,7 +13,7 @@ table { border-collapse: collapse; display: block; margin: 1rem 0 2rem; overflow
 caption { font-weight: 600; padding: .4rem 0; text-align: left; }
 th, td { border-bottom: 1px solid var(--line); padding: .2rem .6rem; text-align: left; vertical-align: top; }
 code { font-size: 13px; }
-.good { color: #18794e; font-weight: 600; } .bad { color: #c62828; font-weight: 700; } .none { color: #9a6700; }
+.good, .bad, .none { white-space: nowrap; } .good { color: #18794e; font-weight: 600; } .bad { color: #c62828; font-weight: 700; } .none { color: #9a6700; }
 @media (prefers-color-scheme: dark) { .good { color: #4cc38a; } .bad { color: #ff6369; } .none { color: #f1a10d; } }
 .sums { display: flex; flex-wrap: wrap; gap: .6rem 2rem; padding: 0; } .sums li { list-style: none; } .sums b { display: block; font-size: 1.5rem; }
 """

@@ -1,19 +1,25 @@
 """The parts of the evidence page as HTML: a function for each section, from the data of gather()."""
-from html import escape
+import re
+from html import escape as escaped
 
 # Where the page's links lead: the site's own pages of the files (scripts/documentation/site-pages), from build/site/evidence.
 SOURCE = "../source"
+
+
+def escape(text: str) -> str:
+    """A text of the data as HTML; what stands between backticks is code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escaped(text))
 
 
 def link(path: str, text: str) -> str:
     """A link to the site's page of a file of the project."""
     page = path.removesuffix(".md")
     target = f"../{page.removeprefix('docs/')}.html" if path.startswith("docs/") else f"{SOURCE}/{page}.html"
-    return f'<a href="{escape(target)}">{escape(text)}</a>'
+    return f'<a href="{escaped(target)}">{escape(text)}</a>'
 
 
 def code(text: str) -> str:
-    return f"<code>{escape(text)}</code>"
+    return f"<code>{escaped(text)}</code>"
 
 
 def mark(result: str) -> str:
@@ -84,4 +90,4 @@ def peers(data: dict) -> str:
 def with_address(source: str) -> str:
     """A source is an address, a blank and where to look there."""
     address, _, place = source.partition(" ")
-    return f'<a href="{escape(address)}">{escape(address.split("//")[-1].split("/")[0])}</a> {escape(place)}'
+    return f'<a href="{escaped(address)}">{escaped(address.split("//")[-1].split("/")[0])}</a> {escape(place)}'
