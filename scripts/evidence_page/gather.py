@@ -90,6 +90,7 @@ def totals(records: list[dict]) -> dict:
     sums = {"runs": len(records), "failed runs": sum(record["result"] != "passed" for record in records),
             "processor hours": round(sum(record["processor_seconds"] for record in records) / 3600, 2)}
     for record in records:
-        for name, count in record["counts"].items():
+        # Sizes and clocks of a placement are no counts that add up.
+        for name, count in record["counts"].items() if record["kind"] not in ("placement", "build") else ():
             sums[name] = sums.get(name, 0) + count
     return sums

@@ -70,6 +70,11 @@ class Page(unittest.TestCase):
         self.assertEqual([entry["release"] for entry in data["history"]], ["0.9.0-rc1", "0.10.0-rc1"])
         self.assertEqual(data["history"][0]["totals"]["processor hours"], 1.0)
 
+    def test_sizes_of_placements_are_not_added_up(self):
+        data = self.data(v1_0_0=[run("part-unit"), run("place-1", kind="placement", counts={"cells": 5000})])
+        self.assertNotIn("cells", data["history"][0]["totals"])
+        self.assertEqual(data["history"][0]["totals"]["clocks compared"], 1234567)
+
     def test_charts_begin_with_the_second_release(self):
         self.assertIn("begin with the second", charts.section(self.data(v1_0_0=[run("part-unit")])["history"]))
         history = self.data(v1_0_0=[run("part-unit")], v2_0_0=[run("part-unit")])["history"]
