@@ -11,7 +11,7 @@ from .job import Job, check, with_seconds
 
 EXPECTED = Path(__file__).with_name("expected.json")
 LISTS = (tested.builds, hardware.tools, tested.locksteps, hardware.mutations, hardware.proofs, hardware.placements,
-         tested.fuzzers, tested.programs, tested.sanitizers)
+         tested.soaks, tested.fuzzers, tested.programs, tested.sanitizers)
 
 
 def samples() -> List[Job]:
@@ -25,6 +25,7 @@ def samples() -> List[Job]:
              hardware.proof("frame_sender", "quick-proof"),
              hardware.netlist("hx8k-axis"),
              hardware.placement("hx8k-axis", 1, "quick-placement"),
+             tested.soak("quick-soak", 7, "10"),
              tested.fuzzer("quick-fuzz", "gcode", 99, 30),
              tested.sanitizer("quick-sanitizer", 1, 200)]
     if tested.has_programs():

@@ -27,6 +27,8 @@ NO_LOCKSTEP = "^lockstep[.](checker|selftest)"
 # Five seeds of four times the length: as many clocks as scripts/test --long lockstep.
 SEEDS, LENGTH = range(1, 6), "4"
 STOP_SHARDS, SANITIZER_SHARDS = 4, 16
+# Ten seeds of 10^9 clocks: as many as scripts/test --long soak.
+SOAK_SEEDS, SOAK_LENGTH = range(1, 11), "200"
 FUZZERS, FUZZ_SEEDS, FUZZ_SECONDS = ("interpolation", "gcode", "frames"), range(1, 3), 600
 
 # Programs of ../shared/gcode, by GoogleTest's names.
@@ -68,6 +70,15 @@ def locksteps() -> List[Job]:
     jobs += [ctest(f"lockstep-stops-{shard}-of-{STOP_SHARDS}", "lockstep", "release", "-L", "stops", "-I",
                    f"{shard},,{STOP_SHARDS}", inputs=LOCKSTEP, TRAMMEL_LONG="32") for shard in range(1, STOP_SHARDS + 1)]
     return jobs
+
+
+def soak(name: str, seed: int, length: str) -> Job:
+    return ctest(name, "soak", "release", "--timeout", "3600", "-R", "^model[.]Soak[.]", inputs=LOCKSTEP + ("tests/model",),
+                 TRAMMEL_SEED=str(seed), TRAMMEL_LONG=length)
+
+
+def soaks() -> List[Job]:
+    return [soak(f"soak-s{seed}", seed, SOAK_LENGTH) for seed in SOAK_SEEDS]
 
 
 def fuzzer(name: str, target: str, seed: int, seconds: int) -> Job:

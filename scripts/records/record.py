@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Callable, Dict, Tuple
 
-KINDS = ("lockstep", "mutation", "proof", "placement", "fuzz", "program", "sanitizer", "coverage", "part", "build")
+KINDS = ("lockstep", "mutation", "proof", "placement", "fuzz", "program", "sanitizer", "soak", "coverage", "part", "build")
 RESULTS = ("passed", "failed", "timeout", "cancelled")
 JOB = re.compile(r"[a-z0-9][A-Za-z0-9_.-]*")
 # One form alone, so that the order of the texts is that of the times.
