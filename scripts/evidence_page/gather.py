@@ -64,7 +64,7 @@ def foreign_judges(records: list[dict]) -> list[dict]:
                  if "tests" in judge and re.search(judge["tests"], name)}
         results = [r["result"] == "passed" for r in runs] + [result == "passed" for result in tests.values()]
         judge |= {"runs": [r["job"] for r in runs], "passed_tests": sum(v == "passed" for v in tests.values()), "all_tests": len(tests),
-                  "result": "not run" if not results else "passed" if all(results) else "failed"}
+                  "result": "not recorded" if not results else "passed" if all(results) else "failed"}
     return judges
 
 

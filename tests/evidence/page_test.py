@@ -50,7 +50,7 @@ class Page(unittest.TestCase):
 
     def test_without_a_run_nothing_is_called_passed(self):
         data = self.data()
-        self.assertEqual({judge["result"] for judge in data["foreign_judges"]}, {"not run"})
+        self.assertEqual({judge["result"] for judge in data["foreign_judges"]}, {"not recorded"})
         self.assertIn("0 of 10", page.html(data).replace(f"0 of {len(data['foreign_judges'])}", "0 of 10"))
         self.assertNotIn('class="good"', page.html(data))
 
