@@ -36,21 +36,24 @@ module instant_commands #(
   logic                 mark_due_q;
   logic [          2:0] delay_q;
   logic                 fire;
+  logic [  Outputs-1:0] kept_set;  // of the masks, what has not taken effect
+  logic [  Outputs-1:0] kept_clear;
 
   logic [         15:0] word;
 
   assign word = load_bus_pkg::word(load_i);
+  assign {kept_set, kept_clear} = change_o ? '0 : {set_o, clear_o};
   assign fire = (change_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
   assign change_o = delay_q == 3'd1 && !cut_i;
 
-  // What has taken effect stays in the masks, where it changes nothing more: set goes before clear, a later command takes
-  // what it clears out of set_o, and a cut empties both.
+  // What has taken effect leaves the masks: a cause may give the outputs other levels before the next command.
   always_ff @(posedge clk_i) begin
     words_q <= {word[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
     merge_q <= take_output_i;
+    {set_o, clear_o} <= {kept_set, kept_clear};
     if (merge_q) begin
-      set_o   <= (set_o & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0];
-      clear_o <= clear_o | words_q[2*Outputs-1:Outputs];
+      set_o   <= (kept_set & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0];
+      clear_o <= kept_clear | words_q[2*Outputs-1:Outputs];
     end
     change_waits_q <= take_output_i || take_pwm_i || (change_waits_q && !fire);
     mark_waits_q   <= take_mark_i || (mark_waits_q && !fire);
