@@ -135,6 +135,30 @@ class MotionCoreBench {
     }
   }
 
+  // On the ramp of a stop a MARK takes effect, behind an OUTPUT that switched an output off: what the cause switched on
+  // stays on, though OUTPUT_SAFE_CAUSE names it no more.
+  void mark_behind_a_cause() {
+    reset();
+    in_ = {};
+    write_every_ = 1;
+    for (const auto& [address, data] : {std::pair{reg::kSlew, 0x1000U}, std::pair{reg::kOutputSafeCause, 0x10001U}}) {
+      in_.setting = {true, address, data};
+      clock();
+    }
+    in_.setting = {};
+    geometry_.add({stored_command(card_map::Opcode::Output, 0, 0, {{"clear", 1}}),
+                   stored_command(card_map::Opcode::Line, 1, 200, {}, {kOnePulse / 16}), Programs::mark(),
+                   stored_command(card_map::Opcode::Line, 1, 2000, {}, {kOnePulse / 16})});
+    feed_.add({stored_command(card_map::Opcode::Feed, 0, 2200, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}})});
+    for (unsigned i = 0; i < 600; ++i) {
+      in_.link_lost = i >= 150;
+      in_.setting = {i == 160, reg::kOutputSafeCause, 0};
+      clock();
+    }
+    reset();
+    in_ = {};
+  }
+
   // A probe's edge at each clock round the begin of PROBE_END, with a line behind it; cleared at once or late.
   void edges_around_the_end() {
     for (const unsigned ticks : {0U, 3U}) {

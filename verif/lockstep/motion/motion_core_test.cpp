@@ -11,6 +11,7 @@ void random_programs() {
   MotionCoreBench bench(seed_from_environment(20261115));
   const std::uint64_t length = scaled(1'000'000);
   if (kPathCommands) bench.commands_around_ends();
+  if (kPathCommands) bench.mark_behind_a_cause();
   if (kPathCommands) bench.edges_around_the_end();
   if (kStreaming) bench.streaming_set_around_the_begin();
   if (kClasses) bench.holds_before_the_path();
