@@ -7,7 +7,7 @@ import re
 import tomllib
 from pathlib import Path
 
-from records import keep
+from records import counts, keep, suite
 
 ROOT = Path(__file__).resolve().parents[2]
 EVIDENCE = ROOT / "verif/evidence"
@@ -57,7 +57,7 @@ def papers() -> list[dict]:
 
 def foreign_judges(records: list[dict]) -> list[dict]:
     """Each judge with the runs that it was part of: those of its part, and the tests that its pattern names."""
-    judges = tomllib.loads((EVIDENCE / "foreign_judges.toml").read_text())["judge"]
+    judges = tomllib.loads(suite.JUDGES.read_text())["judge"]
     for judge in judges:
         runs = [r for r in records if "part" in judge and r["job"] == f"part-{judge['part']}"]
         tests = {name: result for r in records for name, result in r.get("tests", {}).items()
@@ -89,8 +89,7 @@ def totals(records: list[dict]) -> dict:
     """Sums over the runs of a release candidate, for the charts."""
     sums = {"runs": len(records), "failed runs": sum(record["result"] != "passed" for record in records),
             "processor hours": round(sum(record["processor_seconds"] for record in records) / 3600, 2)}
-    for record in records:
-        # Sizes and clocks of a placement are no counts that add up.
-        for name, count in record["counts"].items() if record["kind"] not in ("placement", "build") else ():
+    for record in filter(counts.add_up, records):
+        for name, count in record["counts"].items():
             sums[name] = sums.get(name, 0) + count
     return sums

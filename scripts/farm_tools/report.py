@@ -4,7 +4,7 @@ import statistics
 from collections import Counter, defaultdict
 from typing import Dict, List
 
-from records import results
+from records import counts, results
 
 from . import plan
 from .job import LONGEST, SHORTEST, Job
@@ -49,9 +49,8 @@ def kinds_text(found: results.Records) -> str:
         wall, used = (sum(entry[name] for entry in entries) for name in ("seconds", "processor_seconds"))
         lines.append(f"{kind:10} {ends}; {minutes(wall)} of workers, {minutes(used)} of processors")
         counted: Counter = Counter()
-        if kind not in ("placement", "build"):  # figures, not sums; and a build compares nothing
-            for entry in entries:
-                counted.update(entry["counts"])
+        for entry in filter(counts.add_up, entries):
+            counted.update(entry["counts"])
         lines += [f"{'':10}   {number:,} {name}" for name, number in sorted(counted.items())]
     return "\n".join(lines)
 
@@ -62,15 +61,15 @@ def placements_text(found: results.Records) -> str:
     for job, entry in found.items():
         if entry["kind"] == "placement" and entry["result"] == "passed":
             seeds[job.rpartition("-s")[0] or job].append(entry["counts"])
-    return "\n".join(placement_line(name, counts) for name, counts in sorted(seeds.items()))
+    return "\n".join(placement_line(name, each) for name, each in sorted(seeds.items()))
 
 
-def placement_line(name: str, counts: List[dict]) -> str:
-    cells = statistics.median_low(each["cells"] for each in counts)
-    clock = statistics.median(each["kHz"] for each in counts)
-    missed = cells > counts[0].get("cells at most", cells) or clock < counts[0].get("kHz at least", clock)
-    wanted = ", ".join(f"{counts[0][key]} {key}" for key in ("cells at most", "kHz at least") if key in counts[0])
-    return f"{name}: {cells} cells, median {clock:.0f} kHz of {len(counts)} seeds" + (
+def placement_line(name: str, seeds: List[dict]) -> str:
+    cells = statistics.median_low(each["cells"] for each in seeds)
+    clock = statistics.median(each["kHz"] for each in seeds)
+    missed = cells > seeds[0].get("cells at most", cells) or clock < seeds[0].get("kHz at least", clock)
+    wanted = ", ".join(f"{seeds[0][key]} {key}" for key in ("cells at most", "kHz at least") if key in seeds[0])
+    return f"{name}: {cells} cells, median {clock:.0f} kHz of {len(seeds)} seeds" + (
         f" ({wanted}{': MISSED' if missed else ''})" if wanted else "")
 
 

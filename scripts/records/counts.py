@@ -8,7 +8,7 @@ from typing import Dict
 
 # Lines "NUMBER TEXT ...", in scripts/test "compared NUMBER TEXT". Their numbers are added.
 COUNTED = ("clocks of random traffic", "cycles of arcs", "stops judged", "of them with random inputs",
-           "frames through a bad link", "frames of random contents", "frames spoiled")
+           "frames through a bad link", "frames of random contents", "frames spoiled", "clocks of soak")
 # Figures of a placement, which stand for themselves.
 MEASURED = ("cells", "cells at most", "kHz", "kHz at least")
 LINE = re.compile(r"^(?:\d+: |compared +)?(\d+) (.+)$", re.M)
@@ -23,6 +23,11 @@ SUMMARIES = (
 PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) .* s  (ok|FAILED)", re.M)
 GOOGLETEST = re.compile(r"^\[  PASSED  \] (\d+) tests?\.", re.M)
 SKIPPED = re.compile(r"^\t *\d+ - .* \((?:Skipped|Disabled)\)$", re.M)
+
+
+def add_up(entry: dict) -> bool:
+    """Whether a record's counts may be summed with others'. Those of a placement stand for themselves; a build compares nothing."""
+    return entry["kind"] not in ("placement", "build")
 
 
 def of_text(text: str) -> Dict[str, int]:
