@@ -15,7 +15,8 @@ void MotionRecord::opened(std::uint64_t clock, const std::array<std::int64_t, ca
 }
 
 void MotionRecord::line(const trammel_period& period, std::int64_t duration) {
-  add(fmt::format("line,{},{},{}\n", period.number, duration, fmt::join(period.target, period.target + joints_, ",")));
+  add(fmt::format("line,{},{},{},{}\n", period.number, period.time, duration,
+                  fmt::join(period.target, period.target + joints_, ",")));
 }
 
 void MotionRecord::closed(std::uint64_t clock) { add(fmt::format("close,{}\n", clock)); }

@@ -16,7 +16,9 @@ class MotionRecord final : public linuxcnc::ServoRecord, public driver::StepSink
 
   // CSV, in order of what it was told:
   //   open,CLOCK,POSITION...            pulses from machine zero
-  //   line,NUMBER,DURATION,TARGET...    of the period, ns, 2^-24 pulses from machine zero
+  //   line,NUMBER,TIME,DURATION,TARGET...
+  //                                     of the period; ns, when LinuxCNC's thread began it; ns; 2^-24 pulses from
+  //                                     machine zero
   //   close,CLOCK
   //   output,CLOCK,LEVELS               of all outputs, bit n: output n
   //   step,CLOCK,COMMAND,AXIS,DIRECTION on the path, before its shaper; COMMAND counts what the stream sent, from 0

@@ -69,22 +69,23 @@ def follows():
         if late and stalled(result, LEAD):
             raise Spoiled(f"{result}")
         check(not late and result["link-ok"], f"{result}")
-        # The stated latency is that of the periods ahead, two more, and two that the owner lets stand; what LinuxCNC's
-        # thread and the owner paused, as measured, comes on top. The feedback trails by no more than the latency told,
-        # at the speed of the fastest joint.
-        paused = (result["longest-period"] + result["longest-silence"]) * 1e-9
+        # The stated latency is that of the periods ahead, two more, and two that the owner lets stand; what the owner
+        # paused and what LinuxCNC's thread, too slow for a while, made up for, as measured, comes on top. The feedback
+        # trails by no more than the latency told, at the speed of the fastest joint.
+        record = Record(bench.folder / "record")
+        caught_up = record.caught_up(PERIOD)
+        paused = (max(result["longest-period"], caught_up) + result["longest-silence"]) * 1e-9
         told = result["longest latency"]
         check(told <= (LEAD + 4) * PERIOD * 1e-9 + paused, f"a latency of {told} s, with pauses of {paused} s")
         allowed = FASTEST * (told + 4 * PERIOD * 1e-9 + paused) + 1 / 80
         check(result["furthest"] <= allowed, f"the feedback was {result['furthest']} mm behind, more than {allowed}")
         check(result["furthest"] >= FASTEST * (LEAD - 2) * PERIOD * 1e-9, f"only {result['furthest']} mm behind")
         check(result["held"][0] == result["held"][1], f"it moved in the hold: {result['held']}")
-        record = Record(bench.folder / "record")
         print(record.judge(3000, LEAD))
         net = [record.net.get(axis, 0) for axis in range(3)]
         check(net == result["counts"], f"the card made {net} pulses and told {result['counts']}")
         print(f"feedback behind by {result['furthest'] / FASTEST * 1000:.1f} ms at most, latency told "
-              f"{result['longest latency'] * 1000:.1f} ms; {result}")
+              f"{told * 1000:.1f} ms; the thread made up for {caught_up / 1e6:.1f} ms; {result}")
 
 
 def linuxcnc_first():

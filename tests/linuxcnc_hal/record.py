@@ -9,7 +9,7 @@ class Stream:
 
     def __init__(self, standing):
         self.standing = standing  # pulses
-        self.lines = []           # (number, duration in ns, targets in 2^-24 pulses)
+        self.lines = []           # (number, time in ns, duration in ns, targets in 2^-24 pulses)
         self.steps = []           # (clock, command, axis, direction)
 
     def furthest(self, lead):
@@ -21,11 +21,22 @@ class Stream:
             steps.setdefault(command if command < lead else command - 1, []).append((axis, direction))
         at, most = list(self.standing), 0.0
         whole = self.lines[:max(steps, default=0)]
-        for index, (_, _, targets) in enumerate(whole):
+        for index, (_, _, _, targets) in enumerate(whole):
             for axis, direction in steps.get(index, []):
                 at[axis] += direction
             most = max(most, max(abs(a - t / UNIT) for a, t in zip(at, targets)))
         return most, len(whole)
+
+
+    def caught_up(self, period):
+        """ns: the most that LinuxCNC's thread, behind its time, made up for. So much more than its lead stands in the
+        card's queue then: periods that came late were queued while the thread was behind."""
+        lateness = [time - number * period for number, time, _, _ in self.lines]
+        most, behind = 0, max(lateness[:1], default=0)
+        for late in lateness:
+            behind = max(behind, late)
+            most = max(most, behind - late)
+        return most
 
 
 class Record:
@@ -37,12 +48,15 @@ class Record:
             if kind == "open":
                 self.streams.append(Stream(numbers[1:]))
             elif kind == "line":
-                self.streams[-1].lines.append((numbers[0], numbers[1], numbers[2:]))
+                self.streams[-1].lines.append((numbers[0], numbers[1], numbers[2], numbers[3:]))
             elif kind == "step":
                 self.net[numbers[2]] = self.net.get(numbers[2], 0) + numbers[3]
                 if self.streams:
                     self.streams[-1].steps.append(tuple(numbers))
         check(self.streams, "nothing was streamed")
+
+    def caught_up(self, period):
+        return max(stream.caught_up(period) for stream in self.streams)
 
     def judge(self, least, lead):
         """Every axis within half a pulse of every target, in at least so many lines. What it found, for the log."""
