@@ -74,6 +74,10 @@ def say(text: str):
     print(f"== {text}", file=sys.stderr, flush=True)
 
 
+def environment(**more: str) -> Dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name not in UNSET} | more
+
+
 class Runs:
     """Runs locksteps, some at a time; each leaves its .dat and its log."""
 
@@ -89,12 +93,12 @@ class Runs:
         command = [str(self.where / "bin" / lockstep.program)]
         if lockstep.program in FILTERS:
             command.append(f"--gtest_filter={FILTERS[lockstep.program]}")
-        environment = {name: value for name, value in os.environ.items() if name not in UNSET}
-        environment["TRAMMEL_RTL_COVERAGE"] = str(self.out / "dat")
+        variables = environment(TRAMMEL_RTL_COVERAGE=str(self.out / "dat"))
         begun = time.monotonic()
         with (self.out / "logs" / f"{lockstep.name}.log").open("w") as log:
             try:
-                status = subprocess.run(command, cwd=self.out, env=environment, stdout=log, stderr=subprocess.STDOUT, timeout=LIMIT).returncode
+                status = subprocess.run(command, cwd=self.out, env=variables, stdout=log, stderr=subprocess.STDOUT,
+                                        timeout=LIMIT).returncode
             except subprocess.TimeoutExpired:
                 status = 124
         self.end(lockstep, status, time.monotonic() - begun)
@@ -182,5 +186,7 @@ def run(arguments) -> int:
     if not arguments.no_run:
         if not arguments.no_build:
             build(where, chosen, arguments.jobs)
+        if arguments.build_only:
+            return 0
         run_all(runs, chosen, arguments.jobs)
     return show(evaluate(runs, chosen, len(chosen) == len(locksteps(where, ""))), out)
