@@ -1,6 +1,7 @@
 """Writes the record of a run of scripts/test or of one of its parts; scripts/test calls this when that has ended."""
 
 import argparse
+import json
 import sys
 from pathlib import Path
 
@@ -25,7 +26,14 @@ def arguments_of(argv):
     parser.add_argument("--status", type=int, required=True, help="exit status of the part")
     parser.add_argument("--suite", nargs=2, type=Path, metavar=("JUNIT", "LOG"), help="ctest's results and its whole log: for "
                         "what the tests compared, and the verdicts of programs from elsewhere")
+    parser.add_argument("--coverage", type=Path, metavar="FILE", help="coverage.json of scripts/coverage: each module's figures")
     return parser.parse_args(argv)
+
+
+def of_modules(found: dict) -> dict:
+    """Each module's figures; those of one lockstep alone say nothing about a module."""
+    return {name: {kind: row[kind] for kind in ("line", "branch", "toggle") if kind in row}
+            for name, row in found["modules"].items()} if found["whole"] else {}
 
 
 def begin() -> int:
@@ -45,6 +53,8 @@ def main(argv) -> int:
         junit, whole = arguments.suite
         counted |= counts.of_text(whole.read_text(errors="replace")) | suite.counts_of(junit)
         verdicts = {"tests": suite.foreign(junit)}
+    if arguments.coverage and arguments.coverage.exists():
+        verdicts["coverage"] = of_modules(json.loads(arguments.coverage.read_text()))
     entry = {
         "job": arguments.job,
         "kind": "part",
