@@ -108,10 +108,17 @@ def line_of(entry: dict) -> str:
     return f"{entry['file']}:{entry['line']}: {entry['function']}: lines {numbers}; {entry['branches']} branches of lines {branches}"
 
 
+def count_lines(figures: Dict[str, dict]) -> List[str]:
+    """For the record of the run: scripts/records/counts.py reads these."""
+    return [f"{sum(row[name] for row in figures.values())} C++ {name.replace('_', ' ')}"
+            for name in ("lines", "lines_covered", "branches", "branches_covered")]
+
+
 def show(found: dict, out: Path) -> int:
     for name, row in found["libraries"].items():
         print(f"{name:8} lines {row['lines_covered']}/{row['lines']} {rate(row['lines_covered'], row['lines']):.1%}, "
               f"branches {row['branches_covered']}/{row['branches']} {rate(row['branches_covered'], row['branches']):.1%}")
+    print(*count_lines(found["libraries"]), sep="\n")
     lines = [line_of(entry) for entry in found["missing"]]
     (out / "missing.txt").write_text("".join(f"{line}\n" for line in lines))
     print(*lines[:SHOWN], sep="\n")

@@ -1,11 +1,10 @@
 """Writes the record of a run of scripts/test or of one of its parts; scripts/test calls this when that has ended."""
 
 import argparse
-import json
 import sys
 from pathlib import Path
 
-from . import counts, identity, record, results, suite
+from . import counts, coverage, identity, record, results, suite
 
 # Pages for developers judge nothing and are judged by nothing.
 INPUTS = (".", ":!docs/developer", ":!docs/decisions", f":!{identity.EVIDENCE}", ":!README.md", ":!CHANGELOG.md")
@@ -30,12 +29,6 @@ def arguments_of(argv):
     return parser.parse_args(argv)
 
 
-def of_modules(found: dict) -> dict:
-    """Each module's figures; those of one lockstep alone say nothing about a module."""
-    return {name: {kind: row[kind] for kind in ("line", "branch", "toggle") if kind in row}
-            for name, row in found["modules"].items()} if found["whole"] else {}
-
-
 def begin() -> int:
     """Prints time, commit and state of the work tree; a commit during the run changes nothing of these."""
     print(identity.now(), identity.commit(), str(identity.is_clean()).lower())
@@ -53,8 +46,8 @@ def main(argv) -> int:
         junit, whole = arguments.suite
         counted |= counts.of_text(whole.read_text(errors="replace")) | suite.counts_of(junit)
         verdicts = {"tests": suite.foreign(junit)}
-    if arguments.coverage and arguments.coverage.exists():
-        verdicts["coverage"] = of_modules(json.loads(arguments.coverage.read_text()))
+    if arguments.coverage and (figures := coverage.of_file(arguments.coverage)):
+        verdicts["coverage"] = figures
     entry = {
         "job": arguments.job,
         "kind": "part",

@@ -7,6 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import Callable, Dict, Tuple
 
+from . import coverage
+
 KINDS = ("lockstep", "mutation", "proof", "placement", "fuzz", "program", "sanitizer", "soak", "coverage", "part", "build")
 RESULTS = ("passed", "failed", "timeout", "cancelled")
 JOB = re.compile(r"[a-z0-9][A-Za-z0-9_.-]*")
@@ -64,16 +66,8 @@ FIELDS: Dict[str, Tuple[Callable[[object], bool], str]] = {
     "machine": (_is_machine, "processors and architecture"),
     "log": (_is_inside, "a path relative to the folder of results"),
 }
-def _is_coverage(value) -> bool:
-    numbers = ("points", "covered", "waived")
-    return isinstance(value, dict) and all(
-        isinstance(kinds, dict) and all(kind in ("line", "branch", "toggle") and isinstance(each, dict) and set(each) == set(numbers)
-                                        and all(_is_count(each[name]) for name in numbers) for kind, each in kinds.items())
-        for kinds in value.values())
-
-
 OPTIONAL = {
-    "coverage": (_is_coverage, "points, covered and waived of line, branch and toggle by module"),
+    "coverage": (coverage.is_right, "points, covered and waived of line, branch and toggle by module"),
     "tests": (_maps_to(lambda value: value in ("passed", "failed", "skipped")), "passed, failed or skipped by test"),
 }
 

@@ -131,8 +131,8 @@ class Counts(InAFolder):
         log = ("cover    busy_timer over                                  0.1 s  ok\n"
                "bug      busy_timer late                                  0.1 s  FAILED (status 1)\n5 of 5 seeded bugs found\n")
         self.assertEqual(counts.of_text(log), {"proof_runs": 2, "proof_runs_as_expected": 1, "seeded_bugs_found": 5})
-        self.assertEqual(counts.of_text("96 line points\n95 line points covered\n1 line points waived\n"),
-                         {"line points": 96, "line points covered": 95, "line points waived": 1})
+        self.assertEqual(counts.of_text("96 line points\n95 line points covered\n1 line points waived\n9 C++ lines covered\n"),
+                         {"line points": 96, "line points covered": 95, "line points waived": 1, "C++ lines covered": 9})
         self.assertEqual(counts.of_text("3 mice\nstat::number_of_executed_units: 4321\n"), {"inputs_tried": 4321})
 
     def test_of_mutants_and_proofs(self):
