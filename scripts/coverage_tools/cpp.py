@@ -49,8 +49,8 @@ def run_tests(out: Path, jobs: int) -> List[str]:
                                         stderr=subprocess.STDOUT, timeout=LIMIT).returncode
             except subprocess.TimeoutExpired:
                 status = 124
-        print(f"test_{name} {time.monotonic() - begun:.0f} s" + (f" FAILED, exit status {status}: {out}/{name}.log" if status else ""),
-              file=sys.stderr, flush=True)
+        verdict = f" FAILED, exit status {status}: {out}/{name}.log" if status else ""
+        print(f"test_{name} {time.monotonic() - begun:.0f} s{verdict}", file=sys.stderr, flush=True)
         return name, status
 
     with ThreadPoolExecutor(jobs) as pool:

@@ -68,9 +68,10 @@ class InAProject(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = Path(folder.name)
+        locksteps = [{"name": "counter", "sources": ["io/counter.sv"]}]
         for name, text in {"rtl/io/counter.sv": SOURCE, "verif/coverage/waivers.toml": "",
                            "verif/evidence/modules.json": json.dumps([{"module": "counter", "file": "io/counter.sv"}]),
-                           "build/verif/judges.json": json.dumps({"locksteps": [{"name": "counter", "sources": ["io/counter.sv"]}]})}.items():
+                           "build/verif/judges.json": json.dumps({"locksteps": locksteps})}.items():
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             (self.root / name).write_text(text)
         for name, value in {"ROOT": self.root, "folder": lambda toggle: self.root / "build"}.items():
