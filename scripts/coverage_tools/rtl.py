@@ -9,7 +9,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Set
 
 from records import identity
 
@@ -17,7 +17,9 @@ from . import points, report, waivers
 
 ROOT = identity.ROOT
 WAIVERS = Path("verif/coverage/waivers.toml")
-LIMIT = 1800  # seconds of one lockstep
+LIMIT = 1800  # seconds of one process
+# The longest, cut into so many processes.
+SHARDS = {"lockstep_card": 4}
 # Judges of judges clock the card as others do. Repetitions of the card's random run with further seeds are left out, as of
 # the time limit of a run under sanitizers.
 FILTERS = {"lockstep_card": "-*_1:*_2:*_3:*_4:*_5:*Around/20"}
@@ -79,50 +81,57 @@ def environment(**more: str) -> Dict[str, str]:
 
 
 class Runs:
-    """Runs locksteps, some at a time; each leaves its .dat and its log."""
+    """Runs locksteps, some at a time; each process leaves its .dat and its log."""
 
-    def __init__(self, where: Path, out: Path, total: int):
-        self.where, self.out, self.total, self.ended, self.failed = where, out, total, 0, []
+    def __init__(self, where: Path, out: Path):
+        self.where, self.out, self.total, self.ended = where, out, 0, 0
+        self.failed: Set[str] = set()
         self.seconds: Dict[str, float] = {}
         for kind in ("dat", "logs"):
             (out / kind).mkdir(parents=True, exist_ok=True)
 
-    def run(self, lockstep: Lockstep):
-        for old in self.files(lockstep):
-            old.unlink()
+    def all(self, chosen: List[Lockstep], jobs: int):
+        for lockstep in chosen:
+            for old in self.files(lockstep):
+                old.unlink()
+        runs = [(lockstep, shard) for lockstep in chosen for shard in range(SHARDS.get(lockstep.program, 1))]
+        # Whole cards first: the longest at the end would run alone.
+        runs.sort(key=lambda run: -len(run[0].sources))
+        self.total = len(runs)
+        with ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(lambda run: self.run(*run), runs))
+        for lockstep in chosen:
+            if lockstep.name not in self.failed and not self.files(lockstep):
+                print(f"{lockstep.name} has counted nothing", file=sys.stderr)
+                self.failed.add(lockstep.name)
+
+    def run(self, lockstep: Lockstep, shard: int):
         command = [str(self.where / "bin" / lockstep.program)]
         if lockstep.program in FILTERS:
             command.append(f"--gtest_filter={FILTERS[lockstep.program]}")
-        variables = environment(TRAMMEL_RTL_COVERAGE=str(self.out / "dat"))
+        name = lockstep.name + (f"-{shard + 1}" if lockstep.program in SHARDS else "")
+        variables = environment(TRAMMEL_RTL_COVERAGE=str(self.out / "dat"), GTEST_SHARD_INDEX=str(shard),
+                                GTEST_TOTAL_SHARDS=str(SHARDS.get(lockstep.program, 1)))
         begun = time.monotonic()
-        with (self.out / "logs" / f"{lockstep.name}.log").open("w") as log:
+        with (self.out / "logs" / f"{name}.log").open("w") as log:
             try:
                 status = subprocess.run(command, cwd=self.out, env=variables, stdout=log, stderr=subprocess.STDOUT,
                                         timeout=LIMIT).returncode
             except subprocess.TimeoutExpired:
                 status = 124
-        self.end(lockstep, status, time.monotonic() - begun)
-
-    def end(self, lockstep: Lockstep, status: int, seconds: float):
+            except OSError as error:  # with --no-build it may not be there
+                log.write(f"{error}\n")
+                status = 127
         self.ended += 1
-        self.seconds[lockstep.name] = round(seconds, 1)
-        verdict = "" if status == 0 else f" FAILED, exit status {status}: {self.out}/logs/{lockstep.name}.log"
-        if status == 0 and not self.files(lockstep):
-            verdict = " FAILED: it has counted nothing"
-        if verdict:
-            self.failed.append(lockstep.name)
-        print(f"{self.ended} of {self.total}: {lockstep.name} {seconds:.1f} s{verdict}", file=sys.stderr, flush=True)
+        seconds = round(time.monotonic() - begun, 1)
+        self.seconds[name] = seconds
+        if status:
+            self.failed.add(lockstep.name)
+        verdict = f" FAILED, exit status {status}: {self.out}/logs/{name}.log" if status else ""
+        print(f"{self.ended} of {self.total}: {name} {seconds} s{verdict}", file=sys.stderr, flush=True)
 
     def files(self, lockstep: Lockstep) -> List[Path]:
         return sorted((self.out / "dat").glob(f"{lockstep.program}.*.dat"))
-
-
-def run_all(runs: Runs, chosen: List[Lockstep], jobs: int):
-    say(f"running {len(chosen)} locksteps, {jobs} at a time")
-    # The card's first: the longest at the end would run alone.
-    order = sorted(chosen, key=lambda each: -len(each.sources))
-    with ThreadPoolExecutor(jobs) as pool:
-        list(pool.map(runs.run, order))
 
 
 def modules_of(chosen: List[Lockstep]) -> Dict[str, str]:
@@ -166,7 +175,7 @@ def show(found: dict, out: Path) -> int:
     print(report.text(found, {name: (ROOT / name).read_text().splitlines() for name in names if (ROOT / name).exists()}))
     print(*report.count_lines(found), sep="\n")
     for name in found["failed"]:
-        print(f"error: lockstep {name} failed: {out}/logs/{name}.log")
+        print(f"error: lockstep {name} failed: {out}/logs")
     if not found["whole"]:
         print("a part of the locksteps: the points that are missing are listed, and not judged")
         return 1 if found["failed"] else 0
@@ -182,11 +191,12 @@ def run(arguments) -> int:
     chosen = locksteps(where, arguments.only)
     if not chosen:
         sys.exit(f"error: no lockstep has a name with {arguments.only}")
-    runs = Runs(where, out.resolve(), len(chosen))
+    runs = Runs(where, out.resolve())
     if not arguments.no_run:
         if not arguments.no_build:
             build(where, chosen, arguments.jobs)
         if arguments.build_only:
             return 0
-        run_all(runs, chosen, arguments.jobs)
+        say(f"running {len(chosen)} locksteps, {arguments.jobs} at a time")
+        runs.all(chosen, arguments.jobs)
     return show(evaluate(runs, chosen, len(chosen) == len(locksteps(where, ""))), out)

@@ -27,7 +27,7 @@ BUGS = [
     ("rtl.py", 'and not file.startswith("boards/sim/")', "", "Verdict.test_other_files_do_not_count"),
     ("rtl.py", 'report.passed(found) and not found["failed"]', "report.passed(found)",
      "Runs.test_a_lockstep_that_fails_fails_though_all_is_covered"),
-    ("rtl.py", "            old.unlink()", "            pass", "Runs.test_old_counts_do_not_stand_for_a_run_that_left_none"),
+    ("rtl.py", "                old.unlink()", "                pass", "Runs.test_old_counts_do_not_stand_for_a_run_that_left_none"),
     ("gcov.py", 'if any(branch["throw"]', "if any(False", "Cpp.test_branches_of_exceptions_alone_do_not_count"),
     ("gcov.py", "known.setdefault(place, Function", "known.setdefault((len(known), 0), Function",
      "Cpp.test_instances_of_a_template_are_one_function"),
