@@ -14,11 +14,27 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${TRAMMEL_RTL_DI
 set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign unique --x-initial unique
     --noassert)
 
+# Points that Verilator counts in the RTL (docs/developer/coverage.md). A run writes them where TRAMMEL_RTL_COVERAGE of its
+# environment names a folder: sim/include/trammel/sim/lockstep.hpp.
+set(TRAMMEL_RTL_COVERAGE "" CACHE STRING "RTL coverage that Verilator counts: a list of line (with branches) and toggle; empty: none")
+set(TRAMMEL_VM_COVERAGE 0)
+set(coverage_run_time "")
+foreach(kind IN LISTS TRAMMEL_RTL_COVERAGE)
+  if(NOT kind MATCHES "^(line|toggle)$")
+    message(FATAL_ERROR "TRAMMEL_RTL_COVERAGE: ${kind} is neither line nor toggle")
+  endif()
+  # Verilator 5.006 parts an if in clocked code from its counter, and the counter then comes before the condition, if that
+  # calls a function: the branch would never be covered, and its else always.
+  list(APPEND TRAMMEL_VERILATOR_ARGS --coverage-${kind} -fno-split)
+  set(TRAMMEL_VM_COVERAGE 1)
+  set(coverage_run_time "${VERILATOR_ROOT}/include/verilated_cov.cpp")
+endforeach()
+
 # Verilator's run time, once for all models.
-add_library(trammel_verilated STATIC "${VERILATOR_ROOT}/include/verilated.cpp"
+add_library(trammel_verilated STATIC "${VERILATOR_ROOT}/include/verilated.cpp" ${coverage_run_time}
   "${VERILATOR_ROOT}/include/verilated_threads.cpp" "${VERILATOR_ROOT}/include/verilated_fst_c.cpp")
 target_compile_features(trammel_verilated PUBLIC cxx_std_17)
-target_compile_definitions(trammel_verilated PUBLIC VM_COVERAGE=0 VM_SC=0 VM_TRACE=1 VM_TRACE_VCD=0 VM_TRACE_FST=1)
+target_compile_definitions(trammel_verilated PUBLIC VM_COVERAGE=${TRAMMEL_VM_COVERAGE} VM_SC=0 VM_TRACE=1 VM_TRACE_VCD=0 VM_TRACE_FST=1)
 target_compile_options(trammel_verilated PRIVATE -w)
 target_include_directories(trammel_verilated SYSTEM PUBLIC "${VERILATOR_ROOT}/include" "${VERILATOR_ROOT}/include/vltstd")
 target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
@@ -51,6 +67,9 @@ function(trammel_verilate target)
   cmake_parse_arguments(A "TRACE;ANY_EVENT" "PREFIX;TOP;LEVEL" "SOURCES;ARGS" ${ARGN})
   if(NOT DEFINED A_LEVEL)
     set(A_LEVEL 3)
+  endif()
+  if(TRAMMEL_RTL_COVERAGE AND A_LEVEL EQUAL 3)  # counters make the code twice as long, and the runs are short
+    set(A_LEVEL 1)
   endif()
   set(files "")
   foreach(file IN LISTS TRAMMEL_RTL_PACKAGES A_SOURCES)

@@ -14,7 +14,7 @@ die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 # Everything that building and testing needs; scripts/setup installs what is missing.
 debian_packages=(
   g++ cmake ninja-build pkg-config git python3-venv python3-dev
-  verilator zlib1g-dev
+  verilator iverilog zlib1g-dev
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
   libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev libsystemc-dev
   clang-14 libclang-rt-14-dev  # libFuzzer
@@ -22,7 +22,7 @@ debian_packages=(
 # The browser that the report's page is tested in.
 debian_packages_page=(chromium)
 # Checks of the sources, other RTL readers, synthesis.
-debian_packages_check=(clang-format universal-ctags iverilog yosys)
+debian_packages_check=(clang-format universal-ctags yosys)
 # The documentation as a site.
 debian_packages_site=(doxygen graphviz)
 # LinuxCNC, whose interpreter tests compare the G-code reader with, and which moves the card; networks of their own for

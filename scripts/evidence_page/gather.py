@@ -68,6 +68,15 @@ def foreign_judges(records: list[dict]) -> list[dict]:
     return judges
 
 
+def coverage(records: list[dict]) -> dict:
+    """Each module's points of the newest run that has counted a kind of them."""
+    found: dict = {}
+    for record in sorted((r for r in records if "coverage" in r), key=lambda r: r["begun"]):
+        for module, kinds in record["coverage"].items():
+            found.setdefault(module, {}).update(kinds)
+    return found
+
+
 def gather(folder: Path = EVIDENCE) -> dict:
     """All that the page shows; `folder` holds the release candidates' runs."""
     candidates = releases(folder)
@@ -77,6 +86,7 @@ def gather(folder: Path = EVIDENCE) -> dict:
         "runs_file": newest["file"],
         "runs": newest["records"],
         "modules": json.loads((EVIDENCE / "modules.json").read_text()),
+        "coverage": coverage(newest["records"]),
         "foreign_judges": foreign_judges(newest["records"]),
         "sizes": sizes(),
         "papers": papers(),

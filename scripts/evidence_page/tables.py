@@ -37,6 +37,9 @@ def table(head: list[str], rows: list[list[str]], caption: str) -> str:
     return f"<table><caption>{escape(caption)}</caption><thead><tr>{heads}</tr></thead>\n<tbody>{lines}</tbody></table>"
 
 
+KINDS = ("line", "branch", "toggle")
+
+
 def number(value: int) -> str:
     return f"{value:,}"
 
@@ -53,8 +56,23 @@ def modules(data: dict) -> str:
     for row in data["modules"]:
         proof = link(f"verif/formal/{row['proof']}.properties", row["proof"]) if row["proof"] else '<span class="none">none</span>'
         rows.append([link(f"rtl/{row['file']}", row["module"]), code(row["lockstep"]), number(row["seeded_bugs"]), proof,
-                     number(row["mutants"]), number(row["listed"])])
-    return table(["module", "smallest lockstep", "seeded bugs", "proof", "mutants", "listed as equivalent"], rows, "Modules of the RTL")
+                     number(row["mutants"]), number(row["listed"]),
+                     *(covered(data["coverage"], row["module"], kind) for kind in KINDS)])
+    return table(["module", "smallest lockstep", "seeded bugs", "proof", "mutants", "listed as equivalent",
+                  *(f"{kind} points covered" for kind in KINDS)], rows, "Modules of the RTL")
+
+
+def covered(coverage: dict, module: str, kind: str) -> str:
+    """Covered of all, and those that are waived; wires alone have no line and no branch."""
+    if module not in coverage:
+        return '<span class="none">not recorded</span>'
+    points = coverage[module].get(kind)
+    if points is None:
+        measured = any(kind in kinds for kinds in coverage.values())
+        return "none" if measured else '<span class="none">not recorded</span>'
+    missing = points["points"] - points["covered"] - points["waived"]
+    text = f"{number(points['covered'])} of {number(points['points'])}" + (f", {points['waived']} waived" if points["waived"] else "")
+    return f'<span class="bad">{text}</span>' if missing else text
 
 
 def foreign_judges(data: dict) -> str:

@@ -11,7 +11,7 @@ from .job import Job, check, with_seconds
 
 EXPECTED = Path(__file__).with_name("expected.json")
 LISTS = (tested.builds, hardware.tools, tested.locksteps, hardware.mutations, hardware.proofs, hardware.placements,
-         tested.soaks, tested.fuzzers, tested.programs, tested.sanitizers)
+         tested.soaks, tested.fuzzers, tested.programs, tested.sanitizers, tested.coverages)
 
 
 def samples() -> List[Job]:
@@ -27,7 +27,8 @@ def samples() -> List[Job]:
              hardware.placement("hx8k-axis", 1, "quick-placement"),
              tested.soak("quick-soak", 7, "10"),
              tested.fuzzer("quick-fuzz", "gcode", 99, 30),
-             tested.sanitizer("quick-sanitizer", 1, 200)]
+             tested.sanitizer("quick-sanitizer", 1, 200),
+             tested.coverage("quick-coverage", "rtl/coverage.json", "--only", "^(step_shaper|time_base)$", seconds=20.0)]
     if tested.has_programs():
         jobs.append(tested.program("arc-yz-plane", "quick-program", long_run=False))
     return jobs

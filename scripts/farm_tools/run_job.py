@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import Optional
 
-from records import counts, identity, record, results
+from records import counts, coverage, identity, record, results
 
 from . import processes
 from .job import WORK, Job
@@ -55,6 +55,8 @@ class Run:
             "counts": self._counts(), "tools": identity.versions(self.job.tools), "machine": identity.machine(),
             "log": str(self.log.relative_to(self.folder)),
         }
+        if figures := self._coverage():
+            entry["coverage"] = figures
         results.store(self.folder, record.check(entry, self.job.id))
         return entry
 
@@ -96,6 +98,10 @@ class Run:
             return self.why, TIMEOUT_STATUS if self.why == "timeout" else CANCELLED_STATUS
         status = status if status >= 0 else 128 - status
         return ("passed" if status == 0 else "failed"), status
+
+    def _coverage(self):
+        path = self.work / self.job.result_file
+        return coverage.of_file(path) if path.name == "coverage.json" else {}
 
     def _counts(self):
         found = counts.of_text(self.log.read_text(errors="replace"))

@@ -16,6 +16,7 @@ SOURCES = ("CMakeLists.txt", "CMakePresets.json", "cmake", "rtl", "frames", "cpp
 # Without what only the host's side has.
 LOCKSTEP = ("CMakeLists.txt", "cmake", "rtl", "frames", "cpp-model", "driver", "sim", "boards", "tests/support", "verif/lockstep",
             "requirements.txt")
+COVERED = (*SOURCES, "scripts/coverage", "scripts/coverage_tools")
 LIMIT_OF_BUILDS = 4 * 3600
 
 # Locksteps whose scenarios are drawn at random, by the seed; all others run once.
@@ -56,7 +57,8 @@ def builds() -> List[Job]:
     return [made("release", products=("build/release/bin/trammel",), seconds=1200),
             made("mutation-sample", ("build-release",), ("build/release/mutation/sample_judges.json",)),
             made("mutation", ("build-mutation-sample",), ("build/release/mutation/judges.json",)),
-            made("dev", ("build-release",), ("build/dev/bin/trammel",), 3600)]
+            made("dev", ("build-release",), ("build/dev/bin/trammel",), 3600),
+            made("coverage", ("build-release",), ("build/rtl-coverage/bin/lockstep_card", "build/coverage/bin/test_planner"), 3600)]
 
 
 def locksteps() -> List[Job]:
@@ -103,6 +105,15 @@ def has_programs() -> bool:
 
 def programs() -> List[Job]:
     return [program(name) for name in PROGRAMS] if has_programs() else []
+
+
+def coverage(name: str, result: str, *options: str, seconds=600.0) -> Job:
+    return Job(name, "coverage", ("scripts/coverage", "--no-build", "-j", "1", "--out", WORK, *options), COVERED, ("build-coverage",),
+               result_file=result, tools=(*COMPILERS, "gcov"), seconds=seconds)
+
+
+def coverages() -> List[Job]:
+    return [coverage("coverage-rtl", "rtl/coverage.json"), coverage("coverage-cpp", "cpp/coverage.json", "--cpp")]
 
 
 def sanitizer(name: str, shard: int, shards: int) -> Job:

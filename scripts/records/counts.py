@@ -9,6 +9,9 @@ from typing import Dict
 # Lines "NUMBER TEXT ...", in scripts/test "compared NUMBER TEXT". Their numbers are added.
 COUNTED = ("clocks of random traffic", "cycles of arcs", "stops judged", "of them with random inputs",
            "frames through a bad link", "frames of random contents", "frames spoiled", "clocks of soak")
+# As scripts/coverage prints them at its end.
+POINTS = tuple(f"{kind} points{how}" for kind in ("line", "branch", "toggle") for how in ("", " covered", " waived"))
+POINTS += tuple(f"C++ {what}{how}" for what in ("lines", "branches") for how in ("", " covered"))
 # Figures of a placement, which stand for themselves.
 MEASURED = ("cells", "cells at most", "kHz", "kHz at least")
 LINE = re.compile(r"^(?:\d+: |compared +)?(\d+) (.+)$", re.M)
@@ -34,7 +37,7 @@ def of_text(text: str) -> Dict[str, int]:
     """The counts of a log."""
     found: Counter = Counter()
     for number, words in LINE.findall(text):
-        name = next((name for name in COUNTED if words.startswith(name)), words if words in MEASURED else "")
+        name = next((name for name in COUNTED if words.startswith(name)), words if words in MEASURED + POINTS else "")
         if name in MEASURED:
             found[name] = int(number)
         elif name:
@@ -66,7 +69,8 @@ def of_proofs(path: Path) -> Dict[str, int]:
     return {"proof_runs": len(lines), "proof_runs_as_expected": lines.count("ok")}
 
 
-OF_FILES = {"results.csv": of_mutants, "results": of_proofs}
+# The points of coverage.json are in the log, too.
+OF_FILES = {"results.csv": of_mutants, "results": of_proofs, "coverage.json": lambda path: {}}
 
 
 def of_file(path: Path) -> Dict[str, int]:

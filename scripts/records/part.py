@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from . import counts, identity, record, results, suite
+from . import counts, coverage, identity, record, results, suite
 
 # Pages for developers judge nothing and are judged by nothing.
 INPUTS = (".", ":!docs/developer", ":!docs/decisions", f":!{identity.EVIDENCE}", ":!README.md", ":!CHANGELOG.md")
@@ -25,6 +25,7 @@ def arguments_of(argv):
     parser.add_argument("--status", type=int, required=True, help="exit status of the part")
     parser.add_argument("--suite", nargs=2, type=Path, metavar=("JUNIT", "LOG"), help="ctest's results and its whole log: for "
                         "what the tests compared, and the verdicts of programs from elsewhere")
+    parser.add_argument("--coverage", type=Path, metavar="FILE", help="coverage.json of scripts/coverage: each module's figures")
     return parser.parse_args(argv)
 
 
@@ -45,6 +46,8 @@ def main(argv) -> int:
         junit, whole = arguments.suite
         counted |= counts.of_text(whole.read_text(errors="replace")) | suite.counts_of(junit)
         verdicts = {"tests": suite.foreign(junit)}
+    if arguments.coverage and (figures := coverage.of_file(arguments.coverage)):
+        verdicts["coverage"] = figures
     entry = {
         "job": arguments.job,
         "kind": "part",

@@ -7,6 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import Callable, Dict, Tuple
 
+from . import coverage
+
 KINDS = ("lockstep", "mutation", "proof", "placement", "fuzz", "program", "sanitizer", "soak", "coverage", "part", "build")
 RESULTS = ("passed", "failed", "timeout", "cancelled")
 JOB = re.compile(r"[a-z0-9][A-Za-z0-9_.-]*")
@@ -65,6 +67,7 @@ FIELDS: Dict[str, Tuple[Callable[[object], bool], str]] = {
     "log": (_is_inside, "a path relative to the folder of results"),
 }
 OPTIONAL = {
+    "coverage": (coverage.is_right, "points, covered and waived of line, branch and toggle by module"),
     "tests": (_maps_to(lambda value: value in ("passed", "failed", "skipped")), "passed, failed or skipped by test"),
 }
 

@@ -82,7 +82,7 @@ class ResumedRun : public ::testing::Test {
     const auto stands = [&] {
       const std::string before = at;
       at = command_.run("position --card " + server_.url()).out;
-      return at == before;
+      return at == before && at.find("the card moves") == std::string::npos;
     };
     EXPECT_TRUE(eventually(stands));
     return at;

@@ -1,5 +1,5 @@
 """The evidence page: what a run's record must make of it. Seen to fail: with mark() always "good", with a release order by
-text, with a foreign judge that passes without a run, with cells that are not escaped."""
+text, with a foreign judge that passes without a run, with cells that are not escaped, with missing points that are not red."""
 import json
 import pathlib
 import sys
@@ -74,6 +74,19 @@ class Page(unittest.TestCase):
         data = self.data(v1_0_0=[run("part-unit"), run("place-1", kind="placement", counts={"cells": 5000})])
         self.assertNotIn("cells", data["history"][0]["totals"])
         self.assertEqual(data["history"][0]["totals"]["clocks compared"], 1234567)
+
+    def test_each_module_shows_the_coverage_of_its_newest_record(self):
+        def counted(covered, waived=0):
+            return {"axis": {"branch": {"points": 9, "covered": covered, "waived": waived}}, "motion_part": {}}
+
+        data = self.data(v1_0_0=[run("part-coverage", coverage=counted(8, 1)),
+                                 run("coverage-rtl", begun="2025-01-31T23:59:59.999Z", coverage=counted(5))])
+        text = page.html(data)
+        self.assertIn("<td>8 of 9, 1 waived</td>", text)
+        self.assertIn('<span class="none">not recorded</span>', text)  # of another module, and all toggles
+        self.assertIn('<span class="bad">7 of 9</span>', page.html(self.data(v1_0_0=[run("part-coverage", coverage=counted(7))])))
+        row = next(line for line in text.splitlines() if ">motion_part<" in line)
+        self.assertIn("<td>none</td>", row)
 
     def test_charts_begin_with_the_second_release(self):
         self.assertIn("begin with the second", charts.section(self.data(v1_0_0=[run("part-unit")])["history"]))

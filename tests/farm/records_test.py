@@ -39,6 +39,13 @@ class Malformed(InAFolder):
             self.assertIn(f"field {name}: missing", self.refusal(entry))
         self.assertIn("field more: unknown", self.refusal(a_record(more=1)))
 
+    def test_coverage_is_integers_by_module_and_kind(self):
+        right = {"axis": {"line": {"points": 3, "covered": 2, "waived": 1}}, "motion_part": {}}
+        record.check(a_record(coverage=right), "right")
+        for wrong in ([], {"axis": 1}, {"axis": {"magic": right["axis"]["line"]}}, {"axis": {"line": {"points": 3}}},
+                      {"axis": {"line": {"points": 3, "covered": "2", "waived": 1}}}):
+            self.assertIn("field coverage", self.refusal(a_record(coverage=wrong)))
+
     def test_what_is_no_record_is_refused(self):
         for content in ("", "{", "[1]", "3"):
             self.refusal(content)
@@ -124,6 +131,8 @@ class Counts(InAFolder):
         log = ("cover    busy_timer over                                  0.1 s  ok\n"
                "bug      busy_timer late                                  0.1 s  FAILED (status 1)\n5 of 5 seeded bugs found\n")
         self.assertEqual(counts.of_text(log), {"proof_runs": 2, "proof_runs_as_expected": 1, "seeded_bugs_found": 5})
+        self.assertEqual(counts.of_text("96 line points\n95 line points covered\n1 line points waived\n9 C++ lines covered\n"),
+                         {"line points": 96, "line points covered": 95, "line points waived": 1, "C++ lines covered": 9})
         self.assertEqual(counts.of_text("3 mice\nstat::number_of_executed_units: 4321\n"), {"inputs_tried": 4321})
 
     def test_of_mutants_and_proofs(self):

@@ -98,6 +98,11 @@ int state_seed();
 // In place of a seed: all bits begin with 0, as the flip-flops of an FPGA do after configuration.
 inline constexpr int kZeros = 0;
 
+// Builds with TRAMMEL_RTL_COVERAGE (cmake/TrammelVerilate.cmake): adds what the context's model counted to the
+// process's sums, which are written at its end to FOLDER/TEST.PROCESS.dat. FOLDER is TRAMMEL_RTL_COVERAGE of the
+// environment; without it, and in other builds, nothing happens. From any thread.
+void count_coverage(VerilatedContext& context);
+
 // rising_edge.hpp; every Verilated copy has its own.
 template <class Dut>
 void rising_edge(Dut& dut);
@@ -121,6 +126,7 @@ class Simulated {
   ~Simulated() {
     select();
     dut_->final();
+    count_coverage(*context_);
     dut_.reset();
   }
   Simulated(const Simulated&) = delete;

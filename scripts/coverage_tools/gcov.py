@@ -1,0 +1,78 @@
+"""Lines and branches of C++ from gcov's JSON."""
+
+import json
+import subprocess
+from collections import defaultdict
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Dict, Iterable, List, Tuple
+
+Place = Tuple[int, int]  # line and column where a function begins: the same for all instances of a template
+
+
+@dataclass
+class Function:
+    """All instances of a function: a line or branch is covered when one of them has reached it."""
+    name: str
+    lines: Dict[int, int] = field(default_factory=lambda: defaultdict(int))
+    branches: Dict[Tuple[int, int], int] = field(default_factory=lambda: defaultdict(int))  # by line and number there
+
+
+Files = Dict[str, Dict[Place, Function]]  # functions by file below the project's folder
+
+
+def decisions(branches: List[dict]) -> List[int]:
+    """Counts without the pairs of a call that returns or throws: the source decides nothing there."""
+    found, position = [], 0
+    while position < len(branches):
+        if any(branch["throw"] for branch in branches[position:position + 2]):
+            position += 2
+        else:
+            found.append(branches[position]["count"])
+            position += 1
+    return found
+
+
+def add(files: Files, report: dict, root: Path):
+    """Adds what gcov says about one object."""
+    for entry in report["files"]:
+        name = relative(entry["file"], root)
+        if name is None:
+            continue
+        places: Dict[str, Place] = {}
+        known = files.setdefault(name, {})
+        for function in entry["functions"]:
+            place = (function["start_line"], function["start_column"])
+            places[function["name"]] = place
+            known.setdefault(place, Function(function["demangled_name"]))
+        for line in entry["lines"]:
+            if line.get("function_name") in places:
+                add_line(known[places[line["function_name"]]], line)
+
+
+def add_line(function: Function, line: dict):
+    function.lines[line["line_number"]] += line["count"]
+    for number, count in enumerate(decisions(line["branches"])):
+        function.branches[line["line_number"], number] += count
+
+
+def relative(file: str, root: Path):
+    """None for a file from elsewhere, and for what the build has written."""
+    path = Path(file)
+    if path.is_absolute():
+        if not path.is_relative_to(root):
+            return None
+        path = path.relative_to(root)
+    return None if path.parts[0] in ("build", "..") else str(path)
+
+
+def read(objects: Iterable[Path], root: Path) -> Files:
+    """Of the .gcno files; one whose program never ran counts with zeros."""
+    files: Files = {}
+    for path in objects:
+        done = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", str(path)], cwd=path.parent,
+                              check=True, capture_output=True, text=True)
+        for line in done.stdout.splitlines():
+            if line.startswith("{"):
+                add(files, json.loads(line), root)
+    return files

@@ -1,0 +1,70 @@
+// Counts of the RTL's coverage points, summed over all models of a process.
+#include "trammel/sim/lockstep.hpp"
+
+#if VM_COVERAGE
+#include <fmt/format.h>
+#include <unistd.h>
+#include <verilated_cov.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+
+namespace trammel::lockstep {
+
+namespace {
+
+// A test may make hundreds of models: a file for each would take gigabytes with toggle points.
+class CoverageSums {
+ public:
+  explicit CoverageSums(const std::string& folder)
+      : path_(fmt::format("{}/{}.{}.dat", folder, std::filesystem::read_symlink("/proc/self/exe").filename().string(),
+                          getpid())) {}
+  CoverageSums(const CoverageSums&) = delete;
+  CoverageSums& operator=(const CoverageSums&) = delete;
+  // At the process's end, where an exception would find no one: what is missing then, scripts/coverage misses.
+  ~CoverageSums() {
+    std::ofstream file(path_);
+    file << "# SystemC::Coverage-3\n";
+    for (const auto& [point, count] : sums_) file << point << ' ' << count << '\n';
+    if (!file.flush()) fmt::print(stderr, "{}: cannot be written\n", path_);
+  }
+
+  void add(VerilatedContext& context) {
+    const std::lock_guard lock(mutex_);
+    const std::string part = path_ + ".part";
+    context.coveragep()->write(part.c_str());
+    std::ifstream file(part);
+    for (std::string line; std::getline(file, line);) {
+      const std::size_t count = line.rfind(' ');
+      if (line.compare(0, 2, "C ") == 0) sums_[line.substr(0, count)] += std::stoull(line.substr(count));
+    }
+    std::remove(part.c_str());
+  }
+
+ private:
+  std::string path_;
+  std::mutex mutex_;
+  std::map<std::string, std::uint64_t> sums_;  // by a point's text: "C 'keys and values'"
+};
+
+}  // namespace
+
+void count_coverage(VerilatedContext& context) {
+  const char* const folder = std::getenv("TRAMMEL_RTL_COVERAGE");
+  if (!folder) return;
+  static CoverageSums sums(folder);
+  sums.add(context);
+}
+
+}  // namespace trammel::lockstep
+#else
+namespace trammel::lockstep {
+
+void count_coverage(VerilatedContext&) {}
+
+}  // namespace trammel::lockstep
+#endif
