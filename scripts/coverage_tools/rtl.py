@@ -106,10 +106,6 @@ class Runs:
         self.total = len(runs)
         with ThreadPoolExecutor(jobs) as pool:
             list(pool.map(lambda run: self.run(*run), runs))
-        for lockstep in chosen:
-            if lockstep.name not in self.failed and not self.files(lockstep):
-                print(f"{lockstep.name} has counted nothing", file=sys.stderr)
-                self.failed.add(lockstep.name)
 
     def run(self, lockstep: Lockstep, shard: int):
         command = [str(self.where / "bin" / lockstep.program)]
@@ -162,6 +158,10 @@ def evaluate(runs: Runs, chosen: List[Lockstep], whole: bool) -> dict:
     """Reads the .dat files and writes coverage.json, missing.txt and lcov.info into the folder of results. Of a part of the
     locksteps the waivers are applied, and not judged."""
     files = [file for each in chosen for file in runs.files(each)]
+    for lockstep in chosen:
+        if lockstep.name not in runs.failed and not runs.files(lockstep):
+            print(f"{lockstep.name} has counted nothing", file=sys.stderr)
+            runs.failed.add(lockstep.name)
     if not files:
         sys.exit(f"error: no .dat files in {runs.out}/dat: run without --no-run")
     counts = {point: count for point, count in points.read(files, ROOT).items() if is_judged(point.file)}

@@ -152,6 +152,10 @@ class Verdict(InAProject):
     def test_whole_cards_are_left_out_by_name_and_taken_on_demand(self):
         judges = {"locksteps": [{"name": name, "sources": ["io/counter.sv"]} for name in ("counter", "card", "hx8k_uart", "uart_port")]}
         (self.root / "build/verif/judges.json").write_text(json.dumps(judges))
+        self.assertEqual(self.coverage(WHOLE), 1)  # uart_port has left no counts
+        self.assertIn("error: lockstep uart_port failed", self.said)
+        for name in ("uart_port", "card", "hx8k_uart"):
+            (self.dat.parent / f"lockstep_{name}.1.dat").write_text(WHOLE)
         self.assertEqual(self.coverage(WHOLE), 0)
         self.assertIn("left out: whole cards (--cards): card hx8k_uart\n", self.said)
         self.assertEqual(self.coverage(WHOLE, cards=True), 0)
