@@ -1,8 +1,5 @@
-// The second reading of whole programs, and whether it can say no.
-#include "motion_judge.hpp"
-
+// The second reading of whole programs.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,137 +9,17 @@
 #include <fstream>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "trammel/driver/card.hpp"
-#include "trammel/gcode/line_source.hpp"
-#include "trammel/run/runner.hpp"
-#include "trammel/sim/engine.hpp"
+#include "judged_program.hpp"
 
 namespace trammel::test {
 namespace {
 
-constexpr std::uint32_t kClock = 1'000'000;
 constexpr std::uint32_t kFastClock = 50'000'000;  // where the bus has to bring 15,000 lines a second
-
-class Recorder final : public run::Observer, public driver::StepSink {
- public:
-  void command(std::uint64_t /*number*/, const driver::Command& command) override { commands.push_back(command); }
-  void pin_step(const driver::PinStep& step) override { steps.push_back({step.cycle, step.axis, step.direction}); }
-  void path_step(const driver::PathStep& /*step*/) override {}
-
-  std::vector<driver::Command> commands;
-  std::vector<TimedStep> steps;
-};
-
-class Program {
- public:
-  Program(run::ProgramLines lines, const machine::Machine& machine, std::uint32_t clock_hz = kClock)
-      : machine_(machine), clock_hz_(clock_hz) {
-    const auto engine = sim::make_model_engine(
-        sim::EngineOptions{static_cast<unsigned>(std::max<std::size_t>(4, machine.axes.size())), clock_hz, false});
-    driver::Card card = driver::Card::open(*engine);
-    engine->set_sink(&recorder_);
-    run::Runner runner(std::move(lines), machine_, planner::limits_of(card.identification()));
-    runner.add(recorder_);
-    seconds_ = runner.plan().seconds;
-    runner.run(card);
-  }
-
-  MotionVerdict verdict() const {
-    return judge_motion(recorder_.commands, {machine_, static_cast<double>(clock_hz_), 0.01});
-  }
-  double farthest() const { return farthest_from_motion(recorder_.commands, recorder_.steps); }
-  double seconds() const { return seconds_; }
-  Recorder& recorder() { return recorder_; }
-
- private:
-  machine::Machine machine_;
-  std::uint32_t clock_hz_;
-  Recorder recorder_;
-  double seconds_ = 0;
-};
-
-run::ProgramLines text(const std::string& program) {
-  return [text = std::make_shared<const std::string>(program)]() -> std::unique_ptr<gcode::LineSource> {
-    return std::make_unique<gcode::TextLines>(*text, "program");
-  };
-}
-
-// Limits so high that a clock of 1 MHz is no limit, and steps short enough.
-machine::Machine machine_of(double velocity, double acceleration, double jerk) {
-  machine::Machine machine = machine::default_machine();
-  for (machine::MachineAxis& axis : machine.axes) {
-    axis.max_velocity = velocity;
-    axis.max_acceleration = acceleration;
-    axis.max_jerk = jerk;
-  }
-  return machine;
-}
-
-// mm/s, mm/s^2, mm/s^3: a fast machine within what a clock of 1 MHz can do.
-machine::Machine fast_machine(double jerk) { return machine_of(300, 3000, jerk); }
-
-// What integers cost; at corners, what rounded ends do to directions.
-void expect_within_limits(const MotionVerdict& verdict) {
-  EXPECT_LE(verdict.velocity.share, 1.001) << "command " << verdict.velocity.command;
-  EXPECT_LE(verdict.acceleration.share, 1.001) << "command " << verdict.acceleration.command;
-  EXPECT_LE(verdict.jerk.share, 1.001) << "command " << verdict.jerk.command;
-  EXPECT_LE(verdict.acceleration_jump.share, 0.01) << "command " << verdict.acceleration_jump.command;
-  EXPECT_LE(verdict.rate_jump.share, 1) << "command " << verdict.rate_jump.command;
-  EXPECT_LE(verdict.rest.share, 1.01) << "command " << verdict.rest.command;
-  EXPECT_LE(verdict.corner.share, 1.005) << "command " << verdict.corner.command;
-  EXPECT_GT(verdict.updates, 0U);
-}
-
-// A zigzag of short lines in a cube, with feeds that change.
-std::string random_lines(unsigned seed, bool other_axis = false) {
-  std::mt19937 random(seed);
-  std::string program = "G21 G90 G94\n";
-  double x = 0, y = 0, z = 0, e = 0;
-  for (int i = 0; i < 60; ++i) {
-    const double length = std::exp2(std::uniform_real_distribution<>(-5, 4)(random));
-    const double heading = std::uniform_real_distribution<>(0, 6.28)(random);
-    x += length * std::cos(heading);
-    y += length * std::sin(heading);
-    if (random() % 4 == 0) z += std::uniform_real_distribution<>(-1, 1)(random);
-    if (i % 10 == 0) program += fmt::format("F{:.0f}\n", std::uniform_real_distribution<>(300, 9000)(random));
-    program += fmt::format("G{} X{:.4f} Y{:.4f} Z{:.4f}", random() % 12 == 0 ? 0 : 1, x, y, z);
-    if (other_axis) e += length * std::exp2(std::uniform_real_distribution<>(-3, 5)(random)) * (random() % 4 ? 1 : -1);
-    program += other_axis ? fmt::format(" E{:.4f}\n", e) : "\n";
-  }
-  return program + "M2\n";
-}
-
-// A program's commands and its planned seconds, nothing run.
-struct Planned final : driver::CommandSink {
-  Planned(gcode::LineSource& lines, const machine::Machine& machine, std::uint32_t clock_hz, double feed_scale = 1) {
-    gcode::ReaderOptions options;
-    options.block_delete = true;
-    options.feed_scale = feed_scale;
-    gcode::Reader reader(lines, machine, {}, options);
-    planner::CardLimits card;
-    card.clock_hz = clock_hz;
-    card.axes = static_cast<unsigned>(std::max<std::size_t>(4, machine.axes.size()));
-    card.classes = true;
-    planner::BlockBuilder blocks(reader, machine, card);
-    planner::Planner planner(blocks, machine, card);
-    for (planner::PlannedBlock block; planner.next(*this, block);) {
-      if (planner::moves(block.block)) seconds += block.seconds;
-      if (block.block.corner == planner::Corner::kBlended) ++blends;
-    }
-    error = blocks.error();
-  }
-  void put(const driver::Command& command) override { commands.push_back(command); }
-
-  std::vector<driver::Command> commands;
-  double seconds = 0;
-  std::size_t blends = 0;
-  std::optional<gcode::Error> error;
-};
 
 // TRAMMEL_LONG: all thousand.
 bool long_run() { return std::getenv("TRAMMEL_LONG") != nullptr; }
@@ -451,95 +328,6 @@ TEST(MotionJudge, SmallArcsAmongLinesAreWithinTheirLimits) {
     expect_within_limits(verdict);
     EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
   }
-}
-
-// Judged by other limits than it was planned for.
-class MotionJudgeSaysNo : public testing::Test {
- protected:
-  static MotionVerdict judged(const std::string& program, const machine::Machine& planned,
-                              const machine::Machine& judged) {
-    Program run(text(program), planned);
-    return judge_motion(run.recorder().commands, {judged, kClock, 0.01});
-  }
-  const std::string square_ = "G21 G90 G94 F6000\nG1 X20\nY20\nX0\nY0\nM2\n";
-};
-
-TEST_F(MotionJudgeSaysNo, ToSpeedAboveAnAxissLimit) {
-  EXPECT_GT(judged(square_, machine_of(100, 1000, 0), machine_of(98, 1000, 0)).velocity.share, 1.001);
-}
-
-TEST_F(MotionJudgeSaysNo, ToAccelerationAboveAnAxissLimit) {
-  EXPECT_GT(judged(square_, machine_of(100, 1000, 0), machine_of(100, 950, 0)).acceleration.share, 1.04);
-}
-
-TEST_F(MotionJudgeSaysNo, ToATrapezoidWhereJerkIsLimited) {
-  const MotionVerdict verdict = judged(square_, machine_of(100, 1000, 0), machine_of(100, 1000, 20000));
-  EXPECT_GT(verdict.acceleration_jump.share, 0.5);
-  EXPECT_GT(verdict.rest.share, 1.01);
-}
-
-// A planner that does not know what curves cost plans as for a machine of a hundred times the acceleration.
-TEST_F(MotionJudgeSaysNo, ToArcsThatAreTooFast) {
-  const std::string circle = "G21 G90 G94 F6000\nG2 X0 Y0 I5 J0\nM2\n";
-  EXPECT_GT(judged(circle, machine_of(100, 10000, 0), machine_of(100, 1000, 0)).acceleration.share, 1.5);
-}
-
-TEST_F(MotionJudgeSaysNo, ToCornersThatAreTooFast) {
-  EXPECT_GT(judged(random_lines(1), machine_of(100, 10000, 0), machine_of(100, 1000, 0)).corner.share, 1.5);
-}
-
-TEST_F(MotionJudgeSaysNo, ToARateThatJumps) {
-  Program run(text(square_), machine_of(100, 1000, 0));
-  for (driver::Command& command : run.recorder().commands) {
-    auto* piece = std::get_if<driver::FeedCommand>(&command);
-    if (piece != nullptr && piece->acceleration == 0) piece->rate -= piece->rate / 100;
-  }
-  EXPECT_GT(run.verdict().rate_jump.share, 1.5);
-}
-
-// Where ticks a mm change too: from X alone to X with 4 times as much of E, above the floor.
-TEST_F(MotionJudgeSaysNo, ToARateThatJumpsWhereTheDensityChanges) {
-  const machine::Machine machine = machine_of(100, 1000, 0);
-  gcode::TextLines lines("G21 G90 G94 F600\nG1 X40\nG1 X80 E-160\nG1 X120\nM2\n", "program");
-  Planned planned(lines, machine, 10 * kClock);
-  const auto judged = [&] { return judge_motion(planned.commands, {machine, 10 * kClock, 0.01}).rate_jump.share; };
-  ASSERT_LE(judged(), 1);
-  std::vector<driver::FeedCommand*> begins;  // of lines
-  bool begin = true;
-  for (driver::Command& command : planned.commands) {
-    auto* piece = std::get_if<driver::FeedCommand>(&command);
-    if (piece != nullptr && begin) begins.push_back(piece);
-    begin = piece == nullptr;
-  }
-  ASSERT_EQ(begins.size(), 3U);
-  for (const std::size_t line : {1U, 2U}) {
-    const std::uint64_t right = begins[line]->rate;
-    begins[line]->rate = right / 50 * 51;
-    EXPECT_GT(judged(), 1.5) << line;
-    begins[line]->rate = right;
-  }
-}
-
-TEST_F(MotionJudgeSaysNo, ToAStreamOfWhichAPieceIsMissing) {
-  Program run(text(square_), machine_of(100, 1000, 0));
-  auto& commands = run.recorder().commands;
-  commands.erase(commands.begin());
-  EXPECT_THROW(static_cast<void>(run.verdict()), std::runtime_error);
-}
-
-TEST_F(MotionJudgeSaysNo, ToStepsThatAreLateMissingOrTooMany) {
-  Program run(text("G21 G90 G94 F6000\nG1 X20 Y7\nG2 X20 Y7 I4 J1\nG1 X0 Y0\nM2\n"), machine_of(100, 1000, 0));
-  std::vector<TimedStep>& steps = run.recorder().steps;
-  ASSERT_LE(run.farthest(), 0.8);
-  const std::vector<TimedStep> right = steps;
-  for (std::size_t i = steps.size() / 3; i < steps.size(); ++i) steps[i].cycle += 60;  // half a pulse at 8,000 a second
-  EXPECT_GT(run.farthest(), 0.8);
-  steps = right;
-  steps.erase(steps.begin() + 500);
-  EXPECT_GT(run.farthest(), 0.8);
-  steps = right;
-  steps.push_back(steps.back());
-  EXPECT_GT(run.farthest(), 0.8);
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+// Lines and the number that Grbl 1.1h answers them with, 0 for ok.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <sstream>
+#include <string>
+
+#include "router.hpp"
+#include "trammel/grbl/input_buffer.hpp"
+#include "trammel/grbl/interpreter.hpp"
+
+namespace trammel::grbl {
+
+// `lines`: with '|' between them. All but the last are accepted and make the state that the last one meets.
+struct Answer {
+  const char* lines;
+  int error;
+};
+
+inline int answer_of(Interpreter& interpreter, const std::string& line) {
+  const std::string text = cleaned(line);
+  Block block;
+  if (text.empty()) return 0;
+  const bool jog = text.rfind("$J=", 0) == 0;
+  return static_cast<int>(jog ? interpreter.read_jog(text.substr(3), block) : interpreter.read(text, block));
+}
+
+inline void expect_answers(std::initializer_list<Answer> answers) {
+  const machine::Machine machine = router();
+  for (const auto& [lines, error] : answers) {
+    SCOPED_TRACE(lines);
+    Interpreter interpreter(machine, router_card());
+    std::istringstream parts(lines);
+    std::string line;
+    std::getline(parts, line, '|');
+    for (std::string next; std::getline(parts, next, '|'); line = next) {
+      EXPECT_EQ(answer_of(interpreter, line), 0) << line;
+    }
+    EXPECT_EQ(answer_of(interpreter, line), error);
+  }
+}
+
+}  // namespace trammel::grbl
