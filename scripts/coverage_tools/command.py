@@ -20,8 +20,10 @@ def arguments_of(argv):
                         help="instead lines and branches of driver, planner, G-code reader and golden model that their unit tests "
                         "reach, by gcov; exit status 1 below 95 %%")
     parser.add_argument("--toggle", action="store_true", help="also whether each bit went up and down: a build of its own")
+    parser.add_argument("--cards", action="store_true",
+                        help="also the locksteps of whole cards, which take most of the time and should add no point")
     parser.add_argument("--only", default="", metavar="REGEX",
-                        help="only locksteps whose name has this: a look at a part, the missing points are listed and not judged")
+                        help="only locksteps whose name has this, whole cards included: a look at a part, the missing points are listed and not judged")
     parser.add_argument("--build-only", action="store_true", help="build, and run nothing")
     parser.add_argument("--no-build", action="store_true", help="run what is built")
     parser.add_argument("--no-run", action="store_true", help="read what the last runs have counted, after a change of waivers")

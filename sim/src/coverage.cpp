@@ -3,7 +3,6 @@
 
 #if VM_COVERAGE
 #include <fmt/format.h>
-#include <unistd.h>
 #include <verilated_cov.h>
 
 #include <cstdio>
@@ -17,12 +16,14 @@ namespace trammel::lockstep {
 
 namespace {
 
+// The name that a symbolic link leads to: the program's, or the process's number.
+std::string linked(const char* path) { return std::filesystem::read_symlink(path).filename().string(); }
+
 // A test may make hundreds of models: a file for each would take gigabytes with toggle points.
 class CoverageSums {
  public:
   explicit CoverageSums(const std::string& folder)
-      : path_(fmt::format("{}/{}.{}.dat", folder, std::filesystem::read_symlink("/proc/self/exe").filename().string(),
-                          getpid())) {}
+      : path_(fmt::format("{}/{}.{}.dat", folder, linked("/proc/self/exe"), linked("/proc/self"))) {}
   CoverageSums(const CoverageSums&) = delete;
   CoverageSums& operator=(const CoverageSums&) = delete;
   // At the process's end, where an exception would find no one: what is missing then, scripts/coverage misses.

@@ -90,13 +90,16 @@ class InAProject(unittest.TestCase):
         """Exit status; what is printed is in self.said."""
         self.dat.parent.mkdir(parents=True, exist_ok=True)
         self.dat.write_text(text.replace("/project/", f"{self.root}/"))
-        arguments = SimpleNamespace(**{"toggle": False, "only": "", "no_build": True, "no_run": True, "build_only": False, "jobs": 1,
+        arguments = SimpleNamespace(**{"toggle": False, "only": "", "cards": False, "no_build": True, "no_run": True, "build_only": False, "jobs": 1,
                                        "out": self.root / "out", **options})
         said = io.StringIO()
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), mock.patch.object(rtl, "checked"):
             status = rtl.run(arguments)
         self.said = said.getvalue()
         return status
+
+    def result(self):
+        return json.loads((self.root / "out/rtl/coverage.json").read_text())
 
     def many(self, missing):
         """MISSING and so many covered lines that one waiver is no more than 2 %."""
@@ -106,8 +109,7 @@ class InAProject(unittest.TestCase):
 class Verdict(InAProject):
     def test_all_points_covered_passes(self):
         self.assertEqual(self.coverage(WHOLE), 0)
-        found = json.loads((self.root / "out/rtl/coverage.json").read_text())
-        self.assertEqual(found["modules"]["counter"]["branch"], {"points": 2, "covered": 2, "waived": 0})
+        self.assertEqual(self.result()["modules"]["counter"]["branch"], {"points": 2, "covered": 2, "waived": 0})
         self.assertIn("2 branch points covered\n", self.said)
 
     def test_an_uncovered_point_fails_by_file_and_line(self):
@@ -146,6 +148,20 @@ class Verdict(InAProject):
         (self.root / "verif/evidence/modules.json").write_text(json.dumps([{"module": "other", "file": "io/other.sv"}]))
         self.assertEqual(self.coverage(WHOLE), 1)
         self.assertIn("module other: no lockstep that was run has it", self.said)
+
+    def test_whole_cards_are_left_out_by_name_and_taken_on_demand(self):
+        judges = {"locksteps": [{"name": name, "sources": ["io/counter.sv"]} for name in ("counter", "card", "hx8k_uart", "uart_port")]}
+        (self.root / "build/verif/judges.json").write_text(json.dumps(judges))
+        self.assertEqual(self.coverage(WHOLE), 1)  # uart_port has left no counts
+        self.assertIn("error: lockstep uart_port failed", self.said)
+        for name in ("uart_port", "card", "hx8k_uart"):
+            (self.dat.parent / f"lockstep_{name}.1.dat").write_text(WHOLE)
+        self.assertEqual(self.coverage(WHOLE), 0)
+        self.assertIn("left out: whole cards (--cards): card hx8k_uart\n", self.said)
+        self.assertEqual(self.coverage(WHOLE, cards=True), 0)
+        self.assertEqual(self.result()["locksteps"], 4)
+        self.assertEqual(self.coverage(MISSING, only="^counter$"), 0)
+        self.assertIn("listed, and not judged", self.said)
 
     def test_without_counts_there_is_no_verdict(self):
         self.coverage(WHOLE)
