@@ -58,7 +58,7 @@ def builds() -> List[Job]:
             made("mutation-sample", ("build-release",), ("build/release/mutation/sample_judges.json",)),
             made("mutation", ("build-mutation-sample",), ("build/release/mutation/judges.json",)),
             made("dev", ("build-release",), ("build/dev/bin/trammel",), 3600),
-            made("coverage", ("build-release",), ("build/rtl-coverage/bin/lockstep_card", "build/coverage/bin/test_planner"), 3600)]
+            made("coverage", ("build-release",), ("build/rtl-coverage/bin/lockstep_motion_core_8", "build/coverage/bin/test_planner"), 3600)]
 
 
 def locksteps() -> List[Job]:
