@@ -39,11 +39,11 @@ target_compile_options(trammel_verilated PRIVATE -w)
 target_include_directories(trammel_verilated SYSTEM PUBLIC "${VERILATOR_ROOT}/include" "${VERILATOR_ROOT}/include/vltstd")
 target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
 
-# What Verilator writes is not the project's: no warnings from it, and no sanitizers in it, with which each card takes minutes
-# to compile.
+# What Verilator writes is not the project's: no warnings from it, and neither sanitizers nor their lines in it, with which
+# each card takes minutes to compile.
 set(TRAMMEL_VERILATED_OPTIONS -w)
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
-  list(APPEND TRAMMEL_VERILATED_OPTIONS -fno-sanitize=all)
+  list(APPEND TRAMMEL_VERILATED_OPTIONS -fno-sanitize=all -g0)
 endif()
 
 # Its headers, compiled once for each level at which what Verilator writes is compiled: half the time of compiling a block.
