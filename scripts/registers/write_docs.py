@@ -33,26 +33,27 @@ with n axes one block write of 4 n + 3 words, from `FREQUENCY_LO` of axis n - 1 
 
 COMMANDS_HEAD = """# Commands
 
-What the queue port (`STREAM`) takes. A command is a sequence of halfwords (16 bits), sent in 32-bit words, the lower
-halfword first:
+A host writes commands to the queue port, the register `STREAM`. A command is a sequence of halfwords (16 bits), sent
+in 32-bit words, the lower halfword first:
 
 | halfword | bits | content |
 |---|---|---|
 | 0 | 7:0 | opcode |
 | 0 | 15:8 | axis mask, bit n for axis n (FEED: flags) |
 | 1 | 7:0 | length in words, header and padding included |
-| 1 | 15:8 | number, modulo 256: the successor of the last accepted command's, 0 after reset, abort and fault |
+| 1 | 15:8 | number, modulo 256: one more than the last accepted command's; 0 after reset, abort and fault |
 | 2 to 4 | 39:0 | count, lowest halfword first; bits 47:40 are 0 |
 | from 5 | | payload: the fields in their order, lowest halfword first |
 
-A halfword of zeros fills the last word where the command has an odd number of halfwords; anything else there is
-`BAD_FIELD`. Signed fields are sign-extended and unsigned ones zero-extended to whole halfwords. A command counts only
-when it is whole and every field is in its range; otherwise it is dropped whole, with the reason and its number in
-`REFUSAL`, and nothing more is taken until `CONTROL.abort`. What the commands do is told in
-[how the card behaves](behaviour.md).
+If a command has an odd number of halfwords, a halfword of zeros fills the last word; any other value there is refused
+as `BAD_FIELD`. Signed fields are sign-extended and unsigned ones zero-extended to whole halfwords. A command counts
+only when it is complete and every field is in its range. Otherwise the whole command is dropped, `REFUSAL` has the
+reason and the command's number, and nothing more is accepted until `CONTROL.abort`. The page on [how the card
+behaves](behaviour.md) describes the effect of the commands.
 
-In the queue halfword 1 and the padding are gone, so a command takes one halfword less there than the "halfwords" below.
-A command that needs an [engine](registers.md#units-and-engines) which is not built in is `UNKNOWN_OPCODE`.
+In the queue a command takes one halfword less than the "halfwords" below, because halfword 1 and the padding are not
+stored. A command that needs an [engine](registers.md#units-and-engines) which is not built in is refused as
+`UNKNOWN_OPCODE`.
 """
 
 
