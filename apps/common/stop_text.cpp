@@ -15,7 +15,7 @@ namespace field = card_map::field;
 
 constexpr std::uint16_t kMapMinorOfRest = 4;
 
-bool has(std::uint8_t mask, std::size_t n) { return (mask >> n & 1U) != 0; }
+bool has(std::uint8_t mask, std::size_t n) { return (std::uint32_t{mask} >> n & 1U) != 0; }
 
 // The card's axis n: limits and drives count as the machine's axes do.
 std::string name_of(const machine::Machine& machine, std::size_t n) {
