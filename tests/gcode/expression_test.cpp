@@ -175,6 +175,15 @@ TEST(Expression, WhatIsWrongIsTold) {
   EXPECT_THAT(refusal(many), HasSubstr("more than 50 assignments on a line"));
 }
 
+TEST(Expression, NumbersOfAnyLength) {
+  EXPECT_EQ(value_of("[0." + std::string(400, '0') + "1]"), 0) << "nearer to 0 than to the least double";
+  EXPECT_EQ(value_of("[" + std::string(400, '0') + "7]"), 7);
+  for (const std::string before : {"[", "[1/", "#"}) {
+    EXPECT_EQ(refusal("G0 X" + before + std::string(400, '9') + "]"),
+              "1: number out of range in '" + std::string(77, '9') + "...'");
+  }
+}
+
 TEST(Expression, LimitsOfNames) {
   std::string named;
   for (int i = 0; i < 51; ++i) named += "#<n" + std::to_string(i) + ">=1 ";
