@@ -153,6 +153,7 @@ TEST(Expression, WhatIsWrongIsTold) {
       {"G0 X[1.2.3]", "not understood from '.3]' on"},
       {"G0 X[.]", "not understood from '.]' on"},
       {"G0 X[2 + * 3]", "not understood from '* 3]' on"},
+      {"G0 Xatan[1/0]/[1]", "1: division by 0"},
       {"G0 Xatan[1]/[1/0]", "1: division by 0"},
       {"G0 Xatan[1]/2", "not understood from '2' on"},
       {"G0 X[atan 1]", "not understood from '1]' on"},

@@ -290,7 +290,8 @@ bool ExpressionReader::function(Value& value, Problem& problem) {
   if (take_word("exists")) return exists(value, problem);
   if (take_word("atan")) {
     Value x;
-    if (peek() != '[' || !bracket(value, problem)) return peek() != '[' ? malformed(problem) : false;
+    if (peek() != '[') return malformed(problem);
+    if (!bracket(value, problem)) return false;
     if (!take('/')) return wrong(problem, "ATAN needs two arguments: ATAN[y]/[x]");
     if (peek() != '[') return malformed(problem);
     if (!bracket(x, problem)) return false;
