@@ -124,6 +124,9 @@ TEST(GcodeArc, Helices) {
   // Where the line has another use of P, that takes it.
   EXPECT_EQ(last_arc("G2 I5 G64 P2").turns, 0U);
   EXPECT_EQ(last_arc("G2 I5 G4 P2").turns, 0U);
+  // G61 has none.
+  EXPECT_EQ(last_arc("G2 I5 G61 P2").turns, 1U);
+  EXPECT_EQ(last_arc("G2 I5 G61.1 P3").turns, 2U);
 }
 
 TEST(GcodeArc, NeedsTheAxesOfThePlane) {
