@@ -174,7 +174,7 @@ TEST(Probe, NegativeValuesAreToldWhenTheyAreKnown) {
   EXPECT_EQ(read_met("G1 X5 F#5063", -3).refusal(), "2: 'F#5063' must not be negative");
   EXPECT_EQ(read_met("G1 X5 F#5063", 90).motions.at(1).feed, 1.5);
 
-  for (const char* letter : {"S"}) {
+  for (const char* letter : {"P", "S"}) {
     const std::string line = std::string("G4 ") + letter + "#5063";
     const ProbedReading dwell = read_assumed(line);
     EXPECT_EQ(dwell.message(), "accepted");
@@ -183,6 +183,11 @@ TEST(Probe, NegativeValuesAreToldWhenTheyAreKnown) {
     EXPECT_THAT(read_met(line, -3).refusal(), HasSubstr("must not be negative")) << letter;
     EXPECT_EQ(read_met(line, 2).motions.at(1).seconds, 2) << letter;
   }
+
+  const std::string blend = "G64 P#5063\nG1 X5 Z0";
+  EXPECT_EQ(read_assumed(blend).motions.at(1).tolerance, 0);
+  EXPECT_EQ(read_met(blend, -3).refusal(), "2: 'P-3' must not be negative");
+  EXPECT_EQ(read_met(blend, 0.5).motions.at(1).tolerance, 0.5);
 }
 
 TEST(Probe, RefusesWhatIsNoProbe) {

@@ -132,7 +132,7 @@ bool Interpreter::act(const Context& context) {
     case code::kLocalOrigin:
       return set_origin(context, action == code::kLocalOrigin);
     case code::kDwell:
-      stop(context.motions, *context.words.dwell());
+      stop(context.motions, std::max(0.0, *context.words.dwell()));  // below 0 only before a probe tells it
       break;
     case code::kStoreHome:
     case code::kStoreSecondHome:
