@@ -154,6 +154,7 @@ TEST(Probe, WordsThatHaveToBeKnownBeforeTheRun) {
       {"N#5070 G0 X1", "'N#5070' cannot depend on a probe"},
       {"G43 H#5070", "'H#5070' cannot depend on a probe"},
       {"G10 L[#5070*2] P1 X1", "'L[#5070*2]' cannot depend on a probe"},
+      {"G10 L2 P#5070 X1", "G10: P cannot depend on a probe"},
       {"M62 P#5070", "M62: P cannot depend on a probe"},
       {"#[#5070]=5", "the number of a parameter that is set cannot depend on a probe"},
   };
