@@ -244,5 +244,15 @@ TEST(Probe, LinesThatMayBeWrongAreCheckedWhenTheyAreReached) {
   EXPECT_EQ(read_assumed("G0 X1 Z0\nG1 X5 F0").refusal(), "3: feed is 0") << "nothing depends on the probe there";
 }
 
+// Where the first probe decides whether there is a second one, that one's results are as unknown as if it had run.
+TEST(Probe, AProbeThatMayBeWrongHasNoKnownResults) {
+  for (const char* probe : {"G38.2 X[#5063+3]", "G38.3 X1 F[#5063+3]", "G31 X1 F[#5063+3]"}) {
+    const ProbedReading read = read_assumed(std::string(probe) + "\nG0 Y[1/#5061] X0 Z0");
+    EXPECT_EQ(read.message(), "accepted") << probe;
+    EXPECT_EQ(read.later(), kY) << probe;
+  }
+  EXPECT_EQ(read_assumed("G31 X1 F[#5063+3]\nX2").refusal(), "3: axis words without a motion word (G0, G1, G2 or G3)");
+}
+
 }  // namespace
 }  // namespace trammel::gcode
