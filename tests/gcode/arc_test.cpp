@@ -93,7 +93,10 @@ TEST(GcodeArc, Refusals) {
   EXPECT_THAT(arc_refusal("G2 X10 R5 I5"), HasSubstr("not both"));
   EXPECT_THAT(arc_refusal("G2 X10 I5 K1"), HasSubstr("K in the plane XY (G17)"));
   EXPECT_THAT(arc_refusal("G18 G2 X10 I5 J1"), HasSubstr("J in the plane ZX (G18)"));
+  EXPECT_THAT(arc_refusal("G2 X10 R5 J5"), HasSubstr("not both"));
   EXPECT_THAT(arc_refusal("G90.1 G2 X10 I5"), HasSubstr("both words"));
+  EXPECT_THAT(arc_refusal("G90.1 G2 X10 J5"), HasSubstr("both words"));
+  EXPECT_EQ(refusal("G2 X10 I5"), "1: motion with feed, but no F word before");
   EXPECT_EQ(arc_refusal("G53 G2 X10 Y10 I10"), "G53 needs G0 or G1");
   EXPECT_EQ(arc_refusal("G1 X1 I5"), "I without G2, G3 or G5");
   EXPECT_EQ(arc_refusal("G0 R5"), "R without G2, G3 or a drilling cycle");
@@ -120,12 +123,18 @@ TEST(GcodeArc, Helices) {
   EXPECT_EQ(last_arc("G2 X5 I2.5\nX10 I2.5 P2").turns, 1U) << "G2 is modal";
   // Where the line has another use of P, that takes it.
   EXPECT_EQ(last_arc("G2 I5 G64 P2").turns, 0U);
+  EXPECT_EQ(last_arc("G2 I5 G4 P2").turns, 0U);
+  // G61 has none.
+  EXPECT_EQ(last_arc("G2 I5 G61 P2").turns, 1U);
+  EXPECT_EQ(last_arc("G2 I5 G61.1 P3").turns, 2U);
 }
 
 TEST(GcodeArc, NeedsTheAxesOfThePlane) {
   Machine machine = default_machine();
   machine.axes.erase(machine.axes.begin() + 1);
   EXPECT_EQ(read_text("G2 I5 F1", machine).error->code, ErrorCode::kArcPlaneAxis);
+  EXPECT_EQ(read_text("G19 G2 J5 F1", machine).message(),
+            "an arc in this plane needs an axis Y, which the machine lacks");
   EXPECT_FALSE(read_text("G18 G2 I5 F1", machine).error);
 }
 

@@ -225,6 +225,18 @@ TEST(Cycle, RefusesWhatMakesNoHole) {
   EXPECT_EQ(cycle_refusal("G81"), "3: G81 without an axis word");
   EXPECT_EQ(cycle_refusal("G93 G81 X1 Z-1 R2 F1"), "3: G81 needs a feed: G94, not G93");
   EXPECT_THAT(cycle_refusal("G83 X1 Z-100 R2 Q0.001"), HasSubstr("more than 65536 motions"));
+  EXPECT_EQ(cycle_refusal("G81 X1 Z-1 R2 L65537"), "3: L65537: a cycle is repeated 1 to 65536 times");
+  EXPECT_EQ(refusal("G0 Z10\nG81 X1 Z-1 R2"), "2: motion with feed, but no F word before");
+}
+
+TEST(Cycle, NeedsThreeAxes) {
+  for (const std::size_t lacking : {0U, 1U, 2U}) {
+    machine::Machine machine = machine::default_machine();
+    const std::string letter(1, machine.axes[lacking].letter);
+    machine.axes.erase(machine.axes.begin() + static_cast<std::ptrdiff_t>(lacking));
+    EXPECT_EQ(read_text("F60\nG81 E1 R2", machine).refusal(),
+              "2: a cycle in this plane needs an axis " + letter + ", which the machine lacks");
+  }
 }
 
 TEST(Cycle, HolesKeepTheirCorners) {
@@ -232,6 +244,10 @@ TEST(Cycle, HolesKeepTheirCorners) {
   EXPECT_EQ(program.motions[0].path_control, PathControl::kExactPath);
   EXPECT_EQ(program.motions[0].tolerance, 0);
   EXPECT_EQ(program.motions[program.motions.size() - 2].tolerance, 0.5);
+  for (const Motion& motion : read_text("G61.1 G81 X1 Z-1 R2 F60").motions) {
+    if (motion.kind == MotionKind::kEnd) continue;
+    EXPECT_EQ(motion.path_control, PathControl::kExactStop) << "stops that the program asks for stay";
+  }
 }
 
 }  // namespace

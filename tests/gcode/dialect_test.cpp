@@ -65,8 +65,8 @@ TEST(Dialect, G10WithWordsKeepsItsMeaning) {
 }
 
 TEST(Dialect, AllUnknownWordsAreNamedAtOnce) {
-  const Reading program =
-      read_naming_all("G0 X1\nN2 M808 L5\n/M11\nM70\nM555\nM808\nM104 S0\nM220 S90\nG9\nG68\nM1234.5 (M7)\nG0 M5555\n");
+  const Reading program = read_naming_all(
+      "G0 X1\nN2 M808 L5\n\nN3\nN M9999\n/M11\nM70\nM555\nM808\nM104 S0\nM220 S90\nG9\nG68\nM1234.5 (M7)\nG0 M5555\n");
   ASSERT_TRUE(program.error);
   EXPECT_EQ(describe(*program.error),
             "p.gcode:2: unsupported word 'M808'; --accept M808,M555,M220,G9,M1234.5 leaves out the lines that begin "
@@ -77,6 +77,9 @@ TEST(Dialect, AllUnknownWordsAreNamedAtOnce) {
 TEST(Dialect, WordsThatCannotBeLeftOut) {
   EXPECT_EQ(refusal("G0 X1 M555"), "1: unsupported word 'M555'; on a line of its own --accept M555 leaves it out");
   EXPECT_EQ(refusal("G0 X1 M104 S0"), "1: unsupported word 'M104'; on a line of its own it is left out");
+  EXPECT_EQ(refusal("G0 X1 M19"),
+            "1: unsupported word 'M19': there is no spindle encoder to turn to an angle by; on a line of its own "
+            "--accept M19 leaves it out");
   for (const char* word : {"G68 R30", "G51", "G16", "G33 K1", "M98 P1", "G162", "M206 X1", "G1.5", "G59.4"}) {
     EXPECT_THAT(refusal(word), Not(HasSubstr("--accept"))) << word;
   }
@@ -106,6 +109,8 @@ TEST(Dialect, G28TakesLettersAlone) {
   EXPECT_EQ(end("G28 X Y").target, (Coordinates{-5, -6, 1}));
   EXPECT_EQ(end("G28 X0 Z").target, (Coordinates{-5, 1, 30}));
   EXPECT_EQ(end("G28 z ; lift").target, (Coordinates{1, 1, 30}));
+  EXPECT_EQ(end("G28 Z(lift)").target, (Coordinates{1, 1, 30}));
+  EXPECT_EQ(end("G30 X Z").target, (Coordinates{0, 1, 0}));
   EXPECT_EQ(end("G28 W").target, (Coordinates{-5, -6, 30})) << "a printer's word, where there is no such axis";
   EXPECT_EQ(refusal("G28 A"), "1: 'A': the machine has no axis A; [axis.a] of its file would describe it");
   EXPECT_EQ(refusal("G28 X P"), "1: malformed number in 'X'");
@@ -181,7 +186,11 @@ TEST(Dialect, CommandsOfKlipperAreRefusedByName) {
             "1: 'START_PRINT' is a command or macro of Klipper: let the slicer write the G-code that it stands for");
   EXPECT_THAT(refusal("G0 X1\n  PRINT_END"), HasSubstr("2: 'PRINT_END' is a command"));
   EXPECT_THAT(refusal("SET_VELOCITY_LIMIT ACCEL=500"), HasSubstr("'SET_VELOCITY_LIMIT' is"));
+  EXPECT_THAT(refusal("PRINT_END\tX"), HasSubstr("'PRINT_END' is a command"));
+  EXPECT_THAT(refusal("PRINT_END;X"), HasSubstr("'PRINT_END' is a command"));
   EXPECT_THAT(refusal("Xabs[1]"), HasSubstr("axis words without a motion word"));
+  EXPECT_EQ(refusal("PRINT=1"), "1: malformed number in 'P'") << "no name";
+  EXPECT_EQ(refusal("XY1"), "1: malformed number in 'X'") << "too short for a name";
 }
 
 TEST(Dialect, CommandsOfGrblAreRefusedByName) {

@@ -29,6 +29,7 @@ TEST(Expression, OperatorsAndTheirStrength) {
       {"[1 AND 0]", 0},     {"[1 OR 0]", 1},       {"[2 XOR 3]", 0},  {"[0 xor 5]", 1},  {"[2 + 3 GT 4 XOR 1]", 0},
       {"-[3]", -3},         {"+[3]", 3},           {"[2*-3]", -6},    {"[.5+1.]", 1.5},  {"[4/[1+1]]", 2},
       {"[9**.5]", 3},       {"[2**-2]", 0.25},     {"[[[[1]]]]", 1},  {"[1+2EQ3]", 1},   {"[1 EQ 0 OR 1 EQ 1]", 1},
+      {"[0 AND 1]", 0},     {"[-1 AND 2]", 1},     {"[0 OR 0]", 0},   {"[0 OR -2]", 1},  {"[0 XOR 0]", 0},
   };
   for (const auto& [text, expected] : cases) EXPECT_NEAR(value_of(text), expected, 1e-12) << text;
 }
@@ -73,6 +74,8 @@ TEST(Expression, ExponentialsAndPowers) {
     }
   }
   EXPECT_EQ(value_of("[0**2.5]"), 0);
+  EXPECT_NEAR(value_of("[1.01**2048]") / std::pow(1.01, 2048), 1, 1e-12) << "too many factors for products";
+  EXPECT_EQ(value_of("exp[-746]"), 0);
 }
 
 TEST(Expression, NumberedParameters) {
@@ -107,6 +110,14 @@ TEST(Expression, NamedParameters) {
   EXPECT_THAT(refusal("#<>=1"), HasSubstr("without a name"));
   EXPECT_THAT(refusal("#<a\xc3\xa4>=1"), HasSubstr("not understood from '\xc3\xa4>=1' on"));
   EXPECT_THAT(refusal("#<a=1"), HasSubstr("without '>'"));
+  EXPECT_EQ(refusal("G0 X#<a(b)>"), "1: an expression is not understood from '(b)>' on");
+  EXPECT_EQ(refusal("G0 X#<a)>"), "1: an expression is not understood from ')>' on");
+  EXPECT_EQ(refusal("G0 X#<a;b>"), "1: an expression is not understood from ';b>' on");
+  EXPECT_EQ(refusal("G0 X#<a\x7f>"), "1: an expression is not understood from '\\x7f>' on");
+  EXPECT_EQ(refusal("G0 X#<ab>"), "1: #<ab> has no value yet");
+  EXPECT_EQ(refusal("G0 X#<_q>"), "1: #<_q> has no value yet");
+  EXPECT_EQ(refusal("#<_ini[axis]>=1\nG0 X#<_ini[traj]>"),
+            "2: #<_ini[traj]> is LinuxCNC's own: write its value in the program");
   EXPECT_THAT(refusal("#<" + std::string(65, 'a') + ">=1"), HasSubstr("more than 64 characters"));
 }
 
@@ -139,6 +150,23 @@ TEST(Expression, WhatIsWrongIsTold) {
       {"G0 X[10**13]", "out of range"},
       {"G0 X[10**200*10**200]", "out of range"},
       {"G0 X[foo]", "not understood from 'foo]' on"},
+      {"G0 X[1.2.3]", "not understood from '.3]' on"},
+      {"G0 X[.]", "not understood from '.]' on"},
+      {"G0 X[2 + * 3]", "not understood from '* 3]' on"},
+      {"G0 Xatan[1/0]/[1]", "1: division by 0"},
+      {"G0 Xatan[1]/[1/0]", "1: division by 0"},
+      {"G0 Xatan[1]/2", "not understood from '2' on"},
+      {"G0 X[atan 1]", "not understood from '1]' on"},
+      {"G0 Xabs[1/0]", "1: division by 0"},
+      {"G0 X[abs 1]", "not understood from 'abs 1]' on"},
+      {"G0 X[exists 5]", "EXISTS needs a parameter"},
+      {"G0 Xexists[#<>]", "a parameter without a name"},
+      {"G0 Xexists[#[1/0]]", "1: division by 0"},
+      {"G0 Xexists[#5 6]", "not understood from '6]' on"},
+      {"G0 X#[1/0]", "1: division by 0"},
+      {"#[1/0]=2", "1: division by 0"},
+      {"G0 Xexp[710]", "EXP is out of range"},
+      {"G0 X[0**-.5]", "a power that is no number"},
       {"G0 Xfoo[1]", "malformed number in 'X'"},
   };
   for (const auto& [text, message] : cases) EXPECT_THAT(refusal(text), HasSubstr(message)) << text;
@@ -146,6 +174,27 @@ TEST(Expression, WhatIsWrongIsTold) {
   std::string many = "G0 X1";
   for (int i = 0; i < 51; ++i) many += " #1=1";
   EXPECT_THAT(refusal(many), HasSubstr("more than 50 assignments on a line"));
+}
+
+TEST(Expression, NumbersOfAnyLength) {
+  EXPECT_EQ(value_of("[0." + std::string(400, '0') + "1]"), 0) << "nearer to 0 than to the least double";
+  EXPECT_EQ(value_of("[" + std::string(400, '0') + "7]"), 7);
+  for (const std::string before : {"[", "[1/", "#"}) {
+    EXPECT_EQ(refusal("G0 X" + before + std::string(400, '9') + "]"),
+              "1: number out of range in '" + std::string(77, '9') + "...'");
+  }
+}
+
+TEST(Expression, LimitsOfNames) {
+  std::string named;
+  for (int i = 0; i < 51; ++i) named += "#<n" + std::to_string(i) + ">=1 ";
+  EXPECT_EQ(refusal(named), "1: more than 50 assignments on a line");
+  std::string names;
+  for (int i = 0; i < 4096; ++i) names += "#<n" + std::to_string(i) + ">=" + std::to_string(i) + "\n";
+  EXPECT_EQ(value_of("#<n4095>", names + "#<n4095>=7"), 7) << "of a name that is there";
+  EXPECT_EQ(refusal(names + "#<more>=1"), "4097: more than 4096 names of parameters");
+  EXPECT_EQ(refusal("#<a>=1 G0 X#<a>"), "1: #<a> has no value yet") << "but behind the line";
+  EXPECT_EQ(value_of("[#1*10+exists[#<a>]]", "#<a>=1 #1=exists[#<a>]"), 1);
 }
 
 TEST(Expression, StateThatProgramsRead) {
@@ -173,6 +222,11 @@ TEST(Expression, StateThatProgramsRead) {
   EXPECT_EQ(read_value("G20 G91 G98\n#1=[#<_imperial>+#<_metric>*2+#<_incremental>*4+#<_retract_old_z>*8]", "#1"), 13);
   EXPECT_EQ(read_value("G1 F90\n#1=[#<_feed>+#<_motion_mode>]", "#1"), 100);
   EXPECT_EQ(read_value("#1=#<_line>", "#1"), 0) << "of the line before";
+  EXPECT_EQ(read_value("#1=#5210 #2=#<_rpm>\nS1200", "[#1+#<_rpm>]"), 1200);
+  EXPECT_EQ(read_value("G92 X1\nG92.2\n#1=#5210", "#1"), 0) << "G92 is off";
+  EXPECT_EQ(read_value("#1=#<_tool_offset>", "#1"), 0);
+  machine.axes[0].letter = 'A';
+  EXPECT_EQ(read_value("G20 G0 A90\n#1=#<_a>", "#1"), 90) << "degrees, whatever the units";
 }
 
 TEST(Expression, ParametersGoInAndOut) {
@@ -189,6 +243,29 @@ TEST(Expression, ParametersGoInAndOut) {
   const std::map<int, double> expected = {{31, 4.5}, {32, 8},    {5163, 44}, {5183, 44}, {5210, 1}, {5211, 1},
                                           {5220, 2}, {5221, 10}, {5241, -3}, {5262, 2},  {5400, 9}};
   EXPECT_EQ(reader.parameters(), expected);
+}
+
+TEST(Expression, ParametersThatMeanNothingGoIn) {
+  using Numbers = std::map<int, double>;
+  const auto behind = [](const Numbers& before) {
+    ReaderOptions options;
+    options.parameters = before;
+    const machine::Machine machine = machine::default_machine();
+    TextLines lines("G0 X1", "p.ngc");
+    Reader reader(lines, machine, {}, options);
+    for (Motion motion; reader.next(motion);) continue;
+    EXPECT_FALSE(reader.error());
+    return reader.parameters();
+  };
+  const Numbers none = {{5220, 1}};
+  EXPECT_EQ(behind({}), none);
+  EXPECT_EQ(behind({{0, 4}, {-1, 4}, {5001, 4}}), none) << "there are no such numbers to set";
+  EXPECT_EQ(behind({{5400, -1}}), none);
+  EXPECT_EQ(behind({{5400, 1e7}}), none) << "no such tool";
+  EXPECT_EQ(behind({{5220, 0}}), none);
+  EXPECT_EQ(behind({{5220, 10}}), none) << "no such system";
+  EXPECT_EQ(behind({{5164, 3}}), none) << "no such axis";
+  EXPECT_EQ(behind({{5210, 0}, {5211, 3}}), (Numbers{{5211, 3}, {5220, 1}})) << "G92 that is off";
 }
 
 }  // namespace

@@ -60,6 +60,12 @@ TEST(LeftOut, NoMotionIsLost) {
   EXPECT_EQ(read_leaving_out("M106 M3").error->message, "'M3' beside M106, whose line is left out");
   EXPECT_FALSE(read_leaving_out("M106 ; G1 X5").error);
   EXPECT_FALSE(read_leaving_out("M106 (G1 X5)").error);
+  EXPECT_FALSE(read_leaving_out("M106 Max Gx").error) << "letters of other words";
+  EXPECT_THAT(read_leaving_out("M104. S0").error->message, HasSubstr("unsupported word 'M104.'"));
+  EXPECT_THAT(read_leaving_out("M862.35 P0").error->message, HasSubstr("unsupported word 'M862.35'"));
+  EXPECT_THAT(read_leaving_out("M1040000 S0").error->message, HasSubstr("unsupported word 'M1040000'"));
+  EXPECT_THAT(read_leaving_out("M104.0.0 S0").error->message, HasSubstr("malformed number in 'M104.0.0'"));
+  EXPECT_THAT(read_leaving_out("N M104 S0").error->message, HasSubstr("unsupported word 'M104'"));
   EXPECT_THAT(read_leaving_out("G0 X1 M104 S200").error->message, HasSubstr("unsupported word 'M104'"));
   EXPECT_THAT(read_leaving_out("M1040 S1").error->message, HasSubstr("unsupported word 'M1040'"));
   EXPECT_THAT(read_leaving_out("M104.5").error->message, HasSubstr("unsupported word 'M104.5'"));

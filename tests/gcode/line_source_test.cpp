@@ -3,11 +3,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <rapidcheck/gtest.h>
+#include <sys/time.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "trammel/gcode/reader.hpp"
@@ -112,6 +120,84 @@ TEST(LineSource, ReadsAnOpenFileFromWhereItStands) {
     EXPECT_THAT(all(source), ElementsAre("first", "second"));
   }
   std::fclose(file);
+}
+
+class Pipe {
+ public:
+  Pipe() { EXPECT_EQ(pipe(ends_), 0); }
+  ~Pipe() {
+    close(ends_[0]);
+    end();
+  }
+  int reader() const { return ends_[0]; }
+  void write(const std::string& text) const {
+    EXPECT_EQ(::write(ends_[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  void end() {
+    if (ends_[1] >= 0) close(ends_[1]);
+    ends_[1] = -1;
+  }
+
+ private:
+  int ends_[2]{-1, -1};
+};
+
+TEST(LineSource, CallsBeforeEachReadAndWhileItWaits) {
+  Pipe pipe;
+  FileLines source(pipe.reader(), "pipe");
+  int calls = 0;
+  source.set_meanwhile([&] {
+    ++calls;
+    if (calls == 3) pipe.write("G0 X1\nG0");
+    if (calls == 5) pipe.write(" X2\n");
+    if (calls == 7) pipe.end();
+  });
+  EXPECT_THAT(all(source), ElementsAre("G0 X1", "G0 X2"));
+  EXPECT_EQ(calls, 7);
+  EXPECT_FALSE(source.failure());
+}
+
+TEST(LineSource, WhatIsThrownMeanwhileComesThrough) {
+  Pipe pipe;
+  FileLines source(pipe.reader(), "pipe");
+  source.set_meanwhile([] { throw std::runtime_error("stopped"); });
+  std::string_view line;
+  EXPECT_THROW(source.next(line), std::runtime_error);
+}
+
+// A signal every 2 ms; the pipe is silent until ten have come.
+TEST(LineSource, SignalsDoNotEndAWait) {
+  static std::atomic<int> signals;
+  struct sigaction counting {};
+  struct sigaction before {};
+  counting.sa_handler = [](int) { ++signals; };
+  ASSERT_EQ(sigaction(SIGALRM, &counting, &before), 0);
+  for (const bool meanwhile : {false, true}) {
+    signals = 0;
+    Pipe pipe;
+    FileLines source(pipe.reader(), "pipe");
+    int calls = 0;
+    if (meanwhile) source.set_meanwhile([&] { ++calls; });
+    std::thread writer([&] {
+      sigset_t alarm;  // for the other thread alone
+      sigemptyset(&alarm);
+      sigaddset(&alarm, SIGALRM);
+      pthread_sigmask(SIG_BLOCK, &alarm, nullptr);
+      while (signals < 10) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      pipe.write("G0 X1\n");
+      pipe.end();
+    });
+    const itimerval every{{0, 2000}, {0, 2000}};
+    setitimer(ITIMER_REAL, &every, nullptr);
+    EXPECT_THAT(all(source), ElementsAre("G0 X1"));
+    const itimerval never{};
+    setitimer(ITIMER_REAL, &never, nullptr);
+    writer.join();
+    EXPECT_FALSE(source.failure());
+    if (!meanwhile) continue;
+    EXPECT_GT(calls, 3) << "each signal ends a wait of 20 ms, and another one begins";
+  }
+  sigaction(SIGALRM, &before, nullptr);
 }
 
 TEST(LineSource, SaysWhyAFileCannotBeRead) {

@@ -45,6 +45,10 @@ TEST(Offsets, G10SetsASystem) {
   EXPECT_EQ(x_of("G0 X10\nG92 X3\nG10 L20 P0 X0\nG0 X2"), 13) << "what stands on the line counts, G92 and all";
   EXPECT_EQ(x_of("G0 X10\nG92 X3\nG10 L20 P0 X0\nG92.1 G0 X2"), 6);
   EXPECT_THAT(offset_refusal("G10 L1 P1 Z1"), HasSubstr("G10 L1: only L2 and L20 are supported; tool lengths"));
+  EXPECT_THAT(offset_refusal("G10 L10 P1 Z1"), HasSubstr("G10 L10: only L2 and L20 are supported; tool lengths"));
+  EXPECT_THAT(offset_refusal("G10 L11 P1 Z1"), HasSubstr("G10 L11: only L2 and L20 are supported; tool lengths"));
+  EXPECT_EQ(offset_refusal("G10 L3 P1 Z1"), "G10 L3: only L2 and L20 are supported");
+  EXPECT_EQ(offset_refusal("G10 L2 P-1 X1"), "'P-1' must not be negative");
   EXPECT_THAT(offset_refusal("G10 P1 X1"), HasSubstr("needs L2 or L20"));
   EXPECT_THAT(offset_refusal("G10 L2 X1"), HasSubstr("G10 needs P"));
   EXPECT_THAT(offset_refusal("G10 L2 P10 X1"), HasSubstr("coordinate systems are 1 (G54) to 9 (G59.3)"));

@@ -102,7 +102,8 @@ TEST(PathOutputs, NumberedOnesThatAreRefused) {
   EXPECT_THAT(refused("M64 P-1"), HasSubstr("negative"));
   EXPECT_THAT(refused("M64 P0.5"), HasSubstr("whole"));
   EXPECT_THAT(refused("M62 P0 M63"), HasSubstr("modal group"));
-  for (const char* line : {"G4 P0 M62", "G64 P0 M62", "G1 F60 X0\nG2 I1 P0 M62", "G82 X0 Z0 R1 P0 M62"}) {
+  for (const char* line : {"G4 P0 M62", "G64 P0 M62", "G1 F60 X0\nG2 I1 P0 M62", "G82 X0 Z0 R1 P0 M62",
+                           "G10 L2 X1 P0 M62", "G5 F60 X9 I1 J1 P0 Q0 M62"}) {
     EXPECT_THAT(refused(line), HasSubstr("takes P")) << line;
   }
 }

@@ -43,7 +43,7 @@ TEST(ReaderOptions, FeedScaleIsForFeedsAlone) {
 }
 
 TEST(ReaderOptions, BlockDeleteOff) {
-  const std::string text = "G1 X1 F60\n/X2\n / G4 P1\n//\n/\n/(X5\n";
+  const std::string text = "G1 X1 F60\n\n/X2\n / G4 P1\n//\n/\n/(X5\n";
   EXPECT_EQ(read_from(text).motions.size(), 1U);
   ReaderOptions options;
   options.block_delete = false;
@@ -52,7 +52,7 @@ TEST(ReaderOptions, BlockDeleteOff) {
   EXPECT_EQ(made.motions[1].target[0], 2);
   EXPECT_EQ(made.motions[2].kind, MotionKind::kDwell);
   ASSERT_TRUE(made.error) << "what stands behind the '/' is read";
-  EXPECT_EQ(made.error->line, 6U);
+  EXPECT_EQ(made.error->line, 7U);
 }
 
 TEST(ReaderOptions, ALineBehindTheEndIsAnError) {

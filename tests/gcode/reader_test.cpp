@@ -34,7 +34,7 @@ void expect_end(const std::string& text, double x, double y, double z = 0, doubl
 }
 
 TEST(Gcode, ReadsWordsInAnyDress) {
-  const Reading program = read("n10 g1x1Y-2.5 Z+.5F600\r\nX 3.(note)Y4;rest G99\n\n(only a note)\n");
+  const Reading program = read("n10 g1x1Y-2.5 Z+.5F600\r\n\t X 3.(note)Y4;rest G99\n\n(only a note)\n");
   ASSERT_EQ(program.motions.size(), 3U);
   EXPECT_EQ(program.motions[0].kind, MotionKind::kLine);
   EXPECT_EQ(program.motions[0].line, 1U);
@@ -61,6 +61,11 @@ TEST(Gcode, RefusesMalformedWords) {
   EXPECT_EQ(refusal("G0 \x01"), "1: unexpected byte 0x01");
   EXPECT_EQ(refusal("G0 \xc3\xa4"), "1: unexpected byte 0xc3");
   EXPECT_EQ(refusal(std::string("G0\0X1", 5)), "1: unexpected byte 0x00");
+  EXPECT_EQ(refusal("G0 *&X1"), "1: unexpected '*&'");
+  EXPECT_EQ(refusal("G0 *\x01"), "1: unexpected '*'");
+  EXPECT_EQ(refusal("G0 X-*\x01"), "1: malformed number in 'X-*'");
+  EXPECT_EQ(refusal("G"), "1: malformed number in 'G'");
+  EXPECT_EQ(refusal("GX1"), "1: malformed number in 'G'");
 }
 
 TEST(Gcode, RefusesExponents) {
@@ -109,7 +114,7 @@ TEST(Gcode, RefusesNumbersBeyondReason) {
 }
 
 TEST(Gcode, RefusesWordsItDoesNotKnow) {
-  for (const char* word : {"D1", "G-1", "G20000"}) {
+  for (const char* word : {"D1", "G-1", "G20000", "G1.05", "G1.06", "M3.04"}) {
     EXPECT_EQ(refusal(std::string("G21\n") + word), std::string("2: unsupported word '") + word + "'");
   }
   EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A; [axis.a] of its file would describe it");
@@ -170,6 +175,12 @@ TEST(Gcode, EndsAtM2OrM30OrSecondPercent) {
   EXPECT_EQ(read("\xEF\xBB\xBFG0 X1").motions.size(), 2U);
 }
 
+TEST(Gcode, TooLongALineBehindTheLastPercent) {
+  const Reading program = read_text("%\nG0 X1\n%\n;" + std::string(kLongestLine, 'x') + "\n");
+  EXPECT_EQ(program.refusal(), "4: a line of more than 65535 bytes");
+  EXPECT_EQ(program.motions.size(), 1U) << "no end";
+}
+
 TEST(Gcode, SkipsDeletedBlocks) { expect_end("G0 X1\n/G0 X2\n / G0 X3\n", 1, 0); }
 
 TEST(Gcode, InchesAndMillimetres) {
@@ -188,6 +199,8 @@ TEST(Gcode, RotaryAxesAreInDegrees) {
   EXPECT_EQ(program.motions[0].target[2], 90);
   EXPECT_EQ(program.motions[0].feed, 1);
   EXPECT_NEAR(program.motions[1].feed, 25.4, 1e-12);
+  EXPECT_EQ(read_text("G1 A90 F0.05", machine).refusal(),
+            "1: feed is too small: 0.05 degrees/min, at least 0.06 are possible");
 }
 
 TEST(Gcode, RelativeDistances) { expect_end("G91 G0 X1 Y2\nX1\nG90 Y5\nG91 Y-1 Z1", 2, 4, 1); }
@@ -208,6 +221,7 @@ TEST(Gcode, G92ShiftsTheOrigin) {
   expect_end("G0 X10\nG92 X0\nG53 G0 X1", 1, 0);
   EXPECT_EQ(refusal("G92"), "1: G92 without an axis word");
   EXPECT_EQ(refusal("G92 G0 X1"), "1: G92 cannot share a line with a motion");
+  expect_end("G0 X10\nG92 G80 X2\nG0 X3", 11, 0);
 }
 
 TEST(Gcode, CoordinateSystemsAndG53) {
@@ -219,6 +233,7 @@ TEST(Gcode, CoordinateSystemsAndG53) {
   EXPECT_EQ(x_of("G59 G0 X10"), 16);
   EXPECT_EQ(x_of("G59 G53 G0 X10"), 10);
   EXPECT_EQ(x_of("G53 G0 X10\nX10"), 11);
+  EXPECT_EQ(x_of("G53 G1 X10 F60"), 10);
   EXPECT_EQ(x_of("G0 X10\nG92 X0\nG55 X0"), 12);
   EXPECT_EQ(refusal("G91 G53 G0 X1"), "1: G53 with relative distances");
   EXPECT_EQ(refusal("G53 X1"), "1: G53 needs G0 or G1");
@@ -245,7 +260,10 @@ TEST(Gcode, DwellIsInSeconds) {
   EXPECT_EQ(refusal("G4"), "1: G4 needs P or S, its seconds");
   EXPECT_EQ(refusal("G4 P-1"), "1: 'P-1' must not be negative");
   EXPECT_EQ(refusal("G0 P1"), "1: P without a word that takes it: G2, G3, G4, G5, G10, G64, G82, G89 or M62 to M65");
+  EXPECT_EQ(refusal("P1"), refusal("G0 P1")) << "before all motions";
   EXPECT_EQ(refusal("G61 Q1"), "1: Q without G5, G64, G73 or G83");
+  EXPECT_EQ(refusal("G1 X1 J5"), "1: J without G2, G3 or G5");
+  EXPECT_EQ(refusal("G1 X1 K5"), "1: K without G2 or G3");
   EXPECT_EQ(refusal("G64 P1 Q-1"), "1: 'Q-1' must not be negative");
 }
 
@@ -265,6 +283,26 @@ TEST(Gcode, ModalMotionAndItsEnd) {
   expect_end("G1 F5\nX1\nF6\nY2", 1, 2);
   EXPECT_EQ(refusal("X1"), "1: axis words without a motion word (G0, G1, G2 or G3)");
   EXPECT_EQ(refusal("G0 X1\nG80 X2"), "2: axis words without a motion word (G0, G1, G2 or G3)");
+}
+
+TEST(Gcode, ReadersMove) {
+  const Machine machine = default_machine();
+  TextLines lines("G0 X1\nX2\nD1\n", "p.ngc");
+  Reader first(lines, machine);
+  Motion motion;
+  ASSERT_TRUE(first.next(motion));
+  Reader second(std::move(first));
+  EXPECT_EQ(second.file(), "p.ngc");
+  ASSERT_TRUE(second.next(motion));
+  EXPECT_EQ(motion.target[0], 2) << "it goes on where the other one was";
+  TextLines others("G0 X5\n", "other.ngc");
+  Reader third(others, machine);
+  third = std::move(second);
+  for (int twice = 0; twice < 2; ++twice) {
+    EXPECT_FALSE(third.next(motion));
+    ASSERT_TRUE(third.error()) << "an error stays";
+    EXPECT_EQ(describe(*third.error()), "p.ngc:3: unsupported word 'D1'");
+  }
 }
 
 TEST(Gcode, ErrorsNameFileAndLine) {

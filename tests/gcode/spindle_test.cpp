@@ -49,6 +49,21 @@ TEST(Laser, IsDarkInTraversesAndFollowsWithM4) {
             (Powers{"0", "100", "d100", "100", "0", "d0", "0", "50", "0"}));
   EXPECT_EQ(powers_of(machine, "M4 S1000\nG0 X1\nG1 X2 F60\nX3 S10\nM3 X4\nM5 X5\nM2\n"),
             (Powers{"0", "~100", "~1", "1", "0", "0"}));
+  EXPECT_EQ(powers_of(machine, "F60 M3 S1000\nG3 X4 I2\nG4 P1\nG80\nG4 P1\nM2\n"), (Powers{"100", "d100", "d0", "0"}));
+}
+
+TEST(Spindle, CuttingWaitsForTheInputThatSaysAtSpeed) {
+  const auto waits = [](const machine::Machine& machine) {
+    std::vector<bool> result;
+    for (const Motion& motion : read_text("M3 S500\nG1 X1 F60\nS600\nM5\nM2\n", machine).motions) {
+      if (motion.kind == MotionKind::kDwell) result.push_back(motion.awaits_spindle && motion.seconds == 0);
+    }
+    return result;
+  };
+  machine::Machine machine = machine_with_spindle("inputs.spindle_at_speed=3");
+  EXPECT_EQ(waits(machine), (std::vector<bool>{true, true}));
+  machine::apply_override(machine, "spindle.laser=true");
+  EXPECT_EQ(waits(machine), std::vector<bool>{}) << "a laser is there at once";
 }
 
 TEST(Spindle, ItsOutputIsSwitchedByM3AndM4) {

@@ -111,6 +111,20 @@ TEST(Spline, RefusesWhatIsNoCurve) {
   EXPECT_THAT(spline_refusal("F60 G5 I1 J1 P1 Q1"), HasSubstr("without an axis word"));
   EXPECT_THAT(spline_refusal("F60 G5 X10 I1 J1000000000 P1 Q1"), HasSubstr("more than 10000 lines"));
   EXPECT_THAT(spline_refusal("F60 G1 X10 P-1"), HasSubstr("P without"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 I1 J1 P1"), HasSubstr("G5 needs P and Q"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 I1 J1 Q1"), HasSubstr("G5 needs P and Q"));
+  EXPECT_EQ(spline_refusal("F60 G5.1 I1 J1"), "G5.1 without an axis word");
+  EXPECT_EQ(spline_refusal("G5.1 X10 I1 J1"), "motion with feed, but no F word before");
+}
+
+TEST(Spline, NeedsXAndY) {
+  for (const std::size_t lacking : {0U, 1U}) {
+    machine::Machine machine = machine::default_machine();
+    const std::string letter(1, machine.axes[lacking].letter);
+    machine.axes.erase(machine.axes.begin() + static_cast<std::ptrdiff_t>(lacking));
+    EXPECT_EQ(read_text("F60 G5.1 Z1 I1", machine).message(),
+              "a spline in this plane needs an axis " + letter + ", which the machine lacks");
+  }
 }
 
 }  // namespace

@@ -234,6 +234,22 @@ TEST(Arcs, OfOnePulseGoOutAsLines) {
   EXPECT_EQ(geometry(false, two), Geometry::kArc);
 }
 
+// Half a turn between ends that 32 bits do not hold, though each of them is in range.
+TEST(Arcs, OfEndsTooFarApartGoOutAsLines) {
+  const CardLimits card = with_arcs_by({kCard.clock_hz, 4}, ArcsBy::kAccumulator);
+  const machine::Machine machine = machine_with({"axis.x.steps_per_mm=10000", "axis.y.steps_per_mm=10000"});
+  for (const char* program : {"G0 X-110000\nG2 X110000 R110000 F6000\n", "G0 Y-110000\nG2 Y110000 R110000 F6000\n"}) {
+    gcode::TextLines lines(program, "p.ngc");
+    gcode::Reader reader(lines, machine);
+    BlockBuilder blocks(reader, machine, card);
+    Block block;
+    ASSERT_TRUE(blocks.next(block));
+    ASSERT_TRUE(blocks.next(block));
+    EXPECT_EQ(block.geometry, Geometry::kChords) << program;
+    EXPECT_GT(block.chord_lines, 1000U);
+  }
+}
+
 TEST(Arcs, MayBeAskedForOtherwise) {
   const CardLimits all{100'000'000, 4};
   EXPECT_TRUE(with_arcs_by(all, ArcsBy::kGenerator).arc_generator);

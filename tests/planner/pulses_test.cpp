@@ -66,6 +66,29 @@ TEST(Pulses, TheScaleIsThatOfThePathsTicks) {
   EXPECT_EQ(followed, 3U);
 }
 
+// What follows the speed is dark at rest by itself. A new feed has another scale.
+TEST(Pulses, ThatFollowTheSpeedChangeWithTheFeedAlone) {
+  const Plan plan = plan_text("M4 S500\nG1 X10 F1200\nX20\nG4 P1\nX30\nX40 F1300\nM3 X50\nM4 S0 X60\nM2\n",
+                              laser_machine(), card_for_pulses(true));
+  ASSERT_FALSE(plan.error);
+  std::vector<std::size_t> lines;
+  for (const Planned& block : plan.blocks) {
+    EXPECT_LE(pwm_commands_of(block).size(), 1U);
+    for (const driver::PwmCommand& pulses : pwm_commands_of(block)) {
+      lines.push_back(block->line);
+      EXPECT_EQ(pulses.follows, block->line < 7) << block->line;
+      EXPECT_EQ(pulses.duty, block->line < 8 ? 32768 : 0) << block->line;
+    }
+  }
+  EXPECT_EQ(lines, (std::vector<std::size_t>{2, 6, 7, 8}));
+}
+
+TEST(Pulses, AMachineWithoutASpindlesOutputHasNone) {
+  const Plan plan = plan_text("M3 S500\nG1 X10 F1200\nM2\n", machine::default_machine(), card_for_pulses(true));
+  ASSERT_FALSE(plan.error);
+  for (const Planned& block : plan.blocks) EXPECT_TRUE(pwm_commands_of(block).empty());
+}
+
 TEST(Pulses, ACardWithoutPwmGetsNone) {
   const Plan plan = plan_text("M4 S500\nG1 X10 F1200\nM2\n", laser_machine(), card_for_pulses(false));
   ASSERT_FALSE(plan.error);

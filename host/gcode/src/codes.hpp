@@ -24,6 +24,7 @@ inline constexpr int kToolLength = 430;
 inline constexpr int kToolOffsets = 431;
 inline constexpr int kLocalOrigin = 520;
 inline constexpr int kMachineCoordinates = 530;
+inline constexpr int kBlend = 640;
 inline constexpr int kCancel = 800;
 inline constexpr int kOrigin = 920;
 inline constexpr int kOriginClear = 921;

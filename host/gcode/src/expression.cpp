@@ -142,7 +142,13 @@ bool ExpressionReader::number(Value& value, Problem& problem) {
   value = {};
   if (digits == 0) return malformed(problem);
   const auto result = std::from_chars(first, last, value.value, std::chars_format::fixed);
-  if (result.ec != std::errc() && result.ec != std::errc::result_out_of_range) return malformed(problem);
+  if (result.ec == std::errc::result_out_of_range) {
+    // So small that it is no double: 0 is the nearest.
+    const std::string_view text(first, static_cast<std::size_t>(last - first));
+    if (text.substr(0, text.find('.')).find_first_not_of('0') != std::string_view::npos) {
+      return problem.set(ErrorCode::kNumberOutOfRange, fmt::format("number out of range in '{}'", quote(text)));
+    }
+  }
   at_ = static_cast<std::size_t>(last - line_.data());
   return true;
 }
@@ -284,7 +290,8 @@ bool ExpressionReader::function(Value& value, Problem& problem) {
   if (take_word("exists")) return exists(value, problem);
   if (take_word("atan")) {
     Value x;
-    if (peek() != '[' || !bracket(value, problem)) return peek() != '[' ? malformed(problem) : false;
+    if (peek() != '[') return malformed(problem);
+    if (!bracket(value, problem)) return false;
     if (!take('/')) return wrong(problem, "ATAN needs two arguments: ATAN[y]/[x]");
     if (peek() != '[') return malformed(problem);
     if (!bracket(x, problem)) return false;

@@ -29,6 +29,10 @@ constexpr int kOnWithMotion = 620;
 constexpr int kOnAtRest = 640;
 constexpr int kOffAtRest = 650;
 
+bool is_probe(std::optional<int> word) {
+  return word && (*word == code::kSkip || (*word >= code::kProbe && *word <= code::kProbeAwayQuietly));
+}
+
 // Errors of values, which another outcome of a probe would change.
 bool is_of_values(ErrorCode code) {
   switch (code) {
@@ -132,7 +136,7 @@ bool Interpreter::act(const Context& context) {
     case code::kLocalOrigin:
       return set_origin(context, action == code::kLocalOrigin);
     case code::kDwell:
-      stop(context.motions, *context.words.dwell());
+      stop(context.motions, std::max(0.0, *context.words.dwell()));  // below 0 only before a probe tells it
       break;
     case code::kStoreHome:
     case code::kStoreSecondHome:
@@ -166,13 +170,19 @@ bool Interpreter::depends(const WordSet& words) const {
 }
 
 // A line whose values depend on a probe is checked when it is reached: until then it moves nothing, and where it would
-// end is not known.
+// end is not known. Nor are the results of a probe, where the line is one.
 bool Interpreter::defer(const Context& context, std::size_t motions_before) {
   if (!depends(context.words) || !is_of_values(context.problem.code)) {
     return false;
   }
   context.motions.cut(motions_before);
   here_.later |= context.words.axes();
+  if (is_probe(modes_.motion)) {
+    if (modes_.motion == code::kSkip) modes_.motion.reset();
+    probe_target_ = here_.at;
+    probe_axes_ = here_.later;
+    assume_probed();
+  }
   return true;
 }
 
@@ -309,8 +319,7 @@ bool Interpreter::move(const Context& context) {
   }
   const bool axis_words = words.has_axis_words() && words.code(Group::kToolLength) != code::kToolOffsets;
   if (!axis_words && !explicit_arc && !centre_words) {
-    if (word && (is_cycle(word) || *word == code::kSpline || *word == code::kQuadratic || *word == code::kSkip ||
-                 (*word >= code::kProbe && *word <= code::kProbeAwayQuietly))) {
+    if (word && (is_cycle(word) || *word == code::kSpline || *word == code::kQuadratic || is_probe(word))) {
       return problem.set(ErrorCode::kMissingWord, fmt::format("{} without an axis word", name_of('G', *word)));
     }
     return true;

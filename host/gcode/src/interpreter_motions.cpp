@@ -95,7 +95,7 @@ bool Interpreter::set_turns(const Context& context, Motion& motion) const {
   constexpr double kMaxTurns = 10'000;
   const WordSet& words = context.words;
   const auto turns = words.letter('P');
-  if (!turns || words.code(Group::kNonModal) == code::kDwell || words.code(Group::kPathControl)) {
+  if (!turns || words.code(Group::kNonModal) == code::kDwell || words.code(Group::kPathControl) == code::kBlend) {
     return true;
   }
   if (*turns < 1 || *turns > kMaxTurns || *turns != std::floor(*turns)) {

@@ -55,7 +55,8 @@ bool Interpreter::set_system(const Context& context) {
     return problem.set(ErrorCode::kMissingWord,
                        "G10 needs P, the coordinate system: 1 (G54) to 9 (G59.3), 0: this one");
   }
-  if (words.later('P') || *number < 0 || *number > static_cast<double>(machine::kCoordinateSystems) ||
+  if (words.later('P')) return problem.set(ErrorCode::kDependsOnProbe, "G10: P cannot depend on a probe");
+  if (*number < 0 || *number > static_cast<double>(machine::kCoordinateSystems) ||
       *number != static_cast<double>(static_cast<int>(*number))) {
     return problem.set(ErrorCode::kCoordinateSystem,
                        fmt::format("G10 P{:.10g}: coordinate systems are 1 (G54) to 9 (G59.3), 0: this one", *number));

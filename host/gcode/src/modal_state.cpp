@@ -1,5 +1,7 @@
 #include "modal_state.hpp"
 
+#include <algorithm>
+
 namespace trammel::gcode {
 
 void ModalState::set(const WordSet& words) {
@@ -21,7 +23,8 @@ void ModalState::set_path_control(const WordSet& words) {
                  : *control == 611 ? PathControl::kExactStop
                                    : PathControl::kContinuous;
   const std::optional<double> given = words.letter('P');
-  tolerance = path_control == PathControl::kContinuous && given ? *given * mm_per_unit() : 0;
+  // Below 0 only before a probe tells it.
+  tolerance = path_control == PathControl::kContinuous && given ? std::max(0.0, *given) * mm_per_unit() : 0;
 }
 
 void ModalState::set_feed(const WordSet& words) {

@@ -111,7 +111,7 @@ bool check_uses(const WordSet& words, std::optional<int> modal, Problem& problem
                        fmt::format("{} cannot share a line with a motion", name_of('G', action)));
   }
   takers.motion = otherwise ? std::nullopt : motion ? motion : modal;
-  takers.path_tolerance = words.code(Group::kPathControl) == 640;
+  takers.path_tolerance = words.code(Group::kPathControl) == code::kBlend;
   takers.numbered = words.code(Group::kNumbered).has_value();
   takers.arc = takers.motion == code::kArcClockwise || takers.motion == code::kArcCounterClockwise;
   const bool centre = words.letter('I') || words.letter('J') || words.letter('K') || words.letter('R');

@@ -194,10 +194,9 @@ Blender::Vector Blender::direction(const Way& way, bool at_end) const {
 }
 
 // To the left, in the frame.
-double Blender::curvature(const Way& way, const Frame& frame, bool at_end) const {
+double Blender::curvature(const Way& way, bool at_end) {
   if (way.motion.kind != gcode::MotionKind::kArc) return 0;
-  const bool mirrored = space_[frame.letters[0]] != way.motion.axis_x;
-  return (way.motion.clockwise != mirrored ? -1 : 1) / (at_end ? way.radius_end : way.radius_start);
+  return (way.motion.clockwise ? -1 : 1) / (at_end ? way.radius_end : way.radius_start);
 }
 
 // How far rounded centres put an arc off its circle.
@@ -207,13 +206,12 @@ double Blender::slack(const Way& way) {
 
 // The main plane that holds both, or, of two lines, the one through them.
 bool Blender::find_frame(const Way& from, const Way& to, const Turn& turn, Frame& frame) const {
-  constexpr std::size_t kPlanes[3][3] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};  // X Y, Z X, Y Z, and what stands on them
+  // X Y, Z X, Y Z, as Motion::axis_x and axis_y have them, and what stands on them.
+  constexpr std::size_t kPlanes[3][3] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};
   const bool lines = from.motion.kind != gcode::MotionKind::kArc && to.motion.kind != gcode::MotionKind::kArc;
   const auto lies_in = [&](const Way& way, const std::size_t* plane) {
     if (way.motion.kind != gcode::MotionKind::kArc) return true;
-    const bool same = (space_[plane[0]] == way.motion.axis_x && space_[plane[1]] == way.motion.axis_y) ||
-                      (space_[plane[0]] == way.motion.axis_y && space_[plane[1]] == way.motion.axis_x);
-    return way.flat && same;
+    return way.flat && space_[plane[0]] == way.motion.axis_x && space_[plane[1]] == way.motion.axis_y;
   };
   for (const auto& plane : kPlanes) {
     const std::size_t normal = plane[2];
@@ -260,7 +258,7 @@ Corner Blender::blend(Way& from, Way& to, PathMotion& made) const {
   Frame frame;
   if (!find_frame(from, to, turn, frame)) return Corner::kNoCurve;
   const auto side = [&](const Way& way, const Vector& going, bool at_end) {
-    const double bend = curvature(way, frame, at_end);
+    const double bend = curvature(way, at_end);
     const double most = bend == 0 ? way.length / 2 : way.sweep / 2 / std::abs(bend);
     return Side{dot(going, frame.first), dot(going, frame.second), bend, most};
   };

@@ -103,7 +103,7 @@ class Blender {
   Corner blend(Way& from, Way& to, PathMotion& made) const;
   bool find_frame(const Way& from, const Way& to, const Turn& turn, Frame& frame) const;
   Vector direction(const Way& way, bool at_end) const;
-  double curvature(const Way& way, const Frame& frame, bool at_end) const;
+  static double curvature(const Way& way, bool at_end);
   static double slack(const Way& way);
   static bool can_lose(const Way& way, double share);
   static gcode::Coordinates point(const Way& way, double share);
