@@ -133,7 +133,7 @@ async def line(bus, dut, pulses, clocks):
         frequency = ((abs(pulses[axis]) << 40) * 2 + clocks) // (2 * clocks)
         for name, value in (("FREQUENCY_LO", frequency & 0xFFFFFFFF), ("FREQUENCY_HI", frequency >> 32),
                             ("COUNT", abs(pulses[axis])), ("DIRECTION", int(pulses[axis] < 0))):
-            assert await bus.write(address(name, axis, -0x10), value), name
+            assert await bus.write(address(name, axis), value), name
     assert await bus.write(address("LENGTH_LO"), clocks)
     assert await bus.write(address("LENGTH_HI"), 0)
     assert await bus.write(address("START"), sum(1 << axis for axis in range(AXES) if pulses[axis]))
