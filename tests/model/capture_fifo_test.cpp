@@ -91,9 +91,9 @@ class QueueJudge : public CoreBench {
     for (std::uint32_t queue = read(reg::kCaptureQueue); (queue & field::kCaptureQueueCaptures) != 0;
          queue = read(reg::kCaptureQueue)) {
       take(queue);
-      const std::uint32_t number = queue >> field::kCaptureQueueOldestShift & 0xF;
-      EXPECT_EQ(number, taken++ % 16);
-      EXPECT_TRUE(write(reg::kCaptureNext, number));
+      const std::uint32_t oldest = queue >> field::kCaptureQueueOldestShift & 0xF;
+      EXPECT_EQ(oldest, taken++ % 16);
+      EXPECT_TRUE(write(reg::kCaptureNext, oldest));
     }
     const std::uint32_t empty = read(reg::kCaptureQueue);
     lost = empty >> field::kCaptureQueueLostShift;
@@ -113,7 +113,7 @@ class QueueJudge : public CoreBench {
     }
     ASSERT_FALSE(edges.empty()) << "unit " << k << ": a capture of no edge, time " << time;
     EXPECT_GE(time, edges.front().clock + kFromPin);
-    exact += time == edges.front().clock + kFromPin ? 1 : 0;
+    if (time == edges.front().clock + kFromPin) ++exact;
     edges.pop_front();
     EXPECT_EQ(static_cast<std::int32_t>(read(reg::capture_head_position(0))), positions_.at(time));
   }

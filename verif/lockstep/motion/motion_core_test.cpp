@@ -20,7 +20,9 @@ void random_programs() {
   // What went before makes most of the steps of a short run, and is as long in a long one.
   const std::uint64_t directed_clocks = bench.check().cycles();
   const std::uint64_t directed_steps = bench.steps();
-  if (kPathCommands) EXPECT_GT(directed_steps, 5000U);
+  if (kPathCommands) {
+    EXPECT_GT(directed_steps, 5000U);
+  }
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps() - directed_steps, (length - directed_clocks) / 1000);

@@ -68,7 +68,7 @@ class StopJudge {
     claim(wrong.empty(), wrong + " " + when);
   }
   void judge_unlost_place(const char* when) {
-    claim_equal(bench_.read(reg::kPlace), field::kPlaceHomed & 0xF00U | 0xFU, std::string("PLACE ") + when);
+    claim_equal(bench_.read(reg::kPlace), (field::kPlaceHomed & 0xF00U) | 0xFU, std::string("PLACE ") + when);
   }
   static std::string text(std::uint64_t number) { return std::to_string(number); }
   static std::string text(const Place& place) {
