@@ -1,6 +1,7 @@
 """Lines and branches of C++ from gcov's JSON."""
 
 import json
+import os
 import subprocess
 from collections import defaultdict
 from dataclasses import dataclass, field
@@ -36,7 +37,7 @@ def decisions(branches: List[dict]) -> List[int]:
 def add(files: Files, report: dict, root: Path):
     """Adds what gcov says about one object."""
     for entry in report["files"]:
-        name = relative(entry["file"], root)
+        name = relative(Path(report["current_working_directory"]) / entry["file"], root)
         if name is None:
             continue
         places: Dict[str, Place] = {}
@@ -56,14 +57,13 @@ def add_line(function: Function, line: dict):
         function.branches[line["line_number"], number] += count
 
 
-def relative(file: str, root: Path):
+def relative(file: Path, root: Path):
     """None for a file from elsewhere, and for what the build has written."""
-    path = Path(file)
-    if path.is_absolute():
-        if not path.is_relative_to(root):
-            return None
-        path = path.relative_to(root)
-    return None if path.parts[0] in ("build", "..") else str(path)
+    path = Path(os.path.normpath(file))
+    if not path.is_relative_to(root):
+        return None
+    path = path.relative_to(root)
+    return None if path.parts[0] == "build" else str(path)
 
 
 def read(objects: Iterable[Path], root: Path) -> Files:

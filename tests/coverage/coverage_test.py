@@ -201,7 +201,7 @@ def gcov_line(number, count, *branches, function="f"):
 
 
 def gcov_report(lines, functions=("f",), file="/project/driver/src/a.cpp"):
-    return {"files": [{"file": file, "lines": lines, "functions": [
+    return {"current_working_directory": "/project/build/coverage", "files": [{"file": file, "lines": lines, "functions": [
         {"name": name, "demangled_name": f"{name}()", "start_line": 1, "start_column": 1} for name in functions]}]}
 
 
@@ -229,6 +229,11 @@ class Cpp(unittest.TestCase):
         files = self.files(first, second, elsewhere, written)
         self.assertEqual(list(files), ["driver/src/a.cpp"])
         self.assertEqual(cpp.library_figures(files, "driver")["lines_covered"], 2)
+
+    def test_names_relative_to_the_build_are_those_of_the_project(self):
+        files = self.files(gcov_report([gcov_line(1, 1)], file="../../driver/include/a.hpp"),
+                           gcov_report([gcov_line(1, 1)], file="driver/x.cpp"), gcov_report([gcov_line(1, 1)], file="../../../b.hpp"))
+        self.assertEqual(list(files), ["driver/include/a.hpp"])
 
     def test_less_than_95_percent_is_named(self):
         row = {"lines": 100, "lines_covered": 95, "branches": 100, "branches_covered": 94}

@@ -145,12 +145,33 @@ TEST(ArcChord, RefusesWhatContradictsItself) {
               HasSubstr("farther than 2^31"));
   EXPECT_THAT(with([](HelixGeometry& h) { h.arc.axis_y = 0; }), HasSubstr("span no plane"));
   EXPECT_THAT(with([](HelixGeometry& h) { h.arc.axis_x = 8; }), HasSubstr("span no plane"));
-  EXPECT_THAT(with([](HelixGeometry& h) { h.further[1] = 1; }), HasSubstr("beside it"));
+  EXPECT_THAT(with([](HelixGeometry& h) { h.arc.axis_y = 8; }), HasSubstr("span no plane"));
+  for (const unsigned axis : {0U, 1U})
+    EXPECT_THAT(with([axis](HelixGeometry& h) { h.further[axis] = 1; }), HasSubstr("beside it"));
+  constexpr std::int64_t kFar = 2'147'483'647LL * kCentreUnitsPerPulse;
+  EXPECT_THAT(with([](HelixGeometry& h) { h.arc.centre_x = kFar + 1; }), HasSubstr("farther than 2^31"));
+  EXPECT_THAT(with([](HelixGeometry& h) { h.arc.centre_y = kFar + 1; }), HasSubstr("farther than 2^31"));
+  EXPECT_THAT(with([](HelixGeometry& h) { h.arc.centre_x = h.arc.centre_y = kFar; }), HasSubstr("radius of 3.037e+09"));
   EXPECT_THAT(with([](HelixGeometry& h) { h.arc.turns = kMaxChordTurns; }), HasSubstr("turns"));
   for (const double sweep : {-1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THAT(with([&](HelixGeometry& h) { h.arc.sweep = sweep; }), HasSubstr("sweep"));
   }
   EXPECT_THAT(with([](HelixGeometry& h) { h.further[3] = std::int64_t{1} << 38; }), HasSubstr("further axis"));
+}
+
+// More path ticks than 2^37, whatever the density.
+TEST(ArcChord, FurtherAxesMayAskForTooMuch) {
+  HelixGeometry helix = circle_of(1000);
+  helix.further[2] = std::int64_t{1} << 32;
+  EXPECT_GE(least_chord_ticks(helix), std::uint64_t{1} << 32);
+  helix.arc.turns = 90'000;
+  helix.arc.centre_x = -2'000'000'000LL * kCentreUnitsPerPulse;
+  try {
+    least_chord_ticks(helix);
+    FAIL() << "taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("too long, or too short for what its ends or further axes ask for"));
+  }
 }
 
 // Fields of many arcs as one number, taken on x86-64: other hosts must come to it.

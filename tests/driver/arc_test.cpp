@@ -404,9 +404,19 @@ TEST(ArcCommand, RefusesWhatTheCardCannotDo) {
   g = full_circle(10, false);
   g.end_x = INT32_MAX;
   EXPECT_THAT(refusal(g), HasSubstr("from the end"));
+  g.end_x = 0;
+  g.end_y = INT32_MIN;
+  EXPECT_THAT(refusal(g), HasSubstr("from the end"));
+  for (const std::int64_t far : {-kMaxCentreDistance - 1, kMaxCentreDistance + 1}) {
+    g = full_circle(10, false);
+    g.centre_y = far;
+    EXPECT_THAT(refusal(g), HasSubstr("from the start"));
+  }
   g = full_circle(10, false);
   g.sweep = 0;
   EXPECT_THAT(refusal(g), HasSubstr("no step"));
+  g.sweep = 1e6;
+  EXPECT_THAT(refusal(g), HasSubstr("sweep of 1000000 radians"));
   g.sweep = -1;
   EXPECT_THAT(refusal(g), HasSubstr("sweep"));
   g.sweep = std::nan("");
@@ -422,6 +432,25 @@ TEST(ArcCommand, RefusesWhatTheCardCannotDo) {
   g = full_circle(std::int64_t{1} << 24, false);
   g.turns = 8192;
   EXPECT_THAT(refusal(g), HasSubstr("2^40"));
+}
+
+// Far from every circle, but a place to end at: the centre has no direction of its own.
+TEST(ArcCommand, AnEndAtTheCentreIsReached) {
+  ArcGeometry g = full_circle(10, false);
+  g.end_x = static_cast<std::int32_t>(g.centre_x / kCentreUnitsPerPulse);
+  g.end_y = static_cast<std::int32_t>(g.centre_y / kCentreUnitsPerPulse);
+  ASSERT_EQ(std::abs(g.end_x) + std::abs(g.end_y), 10);
+  for (const StepRule rule : {StepRule::kFourDirections, StepRule::kEightDirections}) {
+    std::int64_t x = 0;
+    std::int64_t y = 0;
+    EXPECT_EQ(prepare(g, rule).quadrants, 4) << "the whole turn first";
+    EXPECT_TRUE(walk(prepare(g, rule), [&](std::int64_t at_x, std::int64_t at_y) {
+      x = at_x;
+      y = at_y;
+    }));
+    EXPECT_EQ(x, g.end_x);
+    EXPECT_EQ(y, g.end_y);
+  }
 }
 
 TEST(ArcCommand, TicksBoundThePath) {

@@ -149,6 +149,17 @@ TEST(CardCapturesAlone, ACardWithoutAQueueSaysSo) {
   EXPECT_THAT(argument_error([&] { card.take_queued_captures(); }), HasSubstr("no queue of captures"));
 }
 
+TEST_F(CardCaptures, OfTheOtherEdgeAlone) {
+  card_.select_capture(0, {3, false, true, false});
+  EXPECT_EQ(engine_->read(reg::capture_select(0)), 0x203U);
+  stand(8, 2000);
+  EXPECT_FALSE(card_.take_capture(0).has_value());
+  stand(0, 2000);
+  const std::optional<Capture> capture = card_.take_capture(0);
+  ASSERT_TRUE(capture.has_value());
+  EXPECT_FALSE(capture->active);
+}
+
 TEST_F(CardCaptures, BadArgumentsAreNamed) {
   EXPECT_THAT(argument_error([&] { card_.select_capture(4, {}); }), HasSubstr("capture unit 4: the card has 4"));
   EXPECT_THAT(argument_error([&] { card_.select_capture(1, {16}); }), HasSubstr("input 16: the card has 16 inputs"));

@@ -5,6 +5,7 @@
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/one_shot.hpp"
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::driver {
@@ -56,6 +57,51 @@ TEST_F(CardInputsOnModel, WhatIsWrittenReadsBack) {
       field::kStopReactionWatchdog | field::kStopReactionLinkLoss | field::kStopReactionSoftLimit;
   EXPECT_EQ(engine_->read(reg::kStopReaction),
             kUntouched | field::kStopReactionLimit | field::kStopReactionProbe | field::kStopReactionToolSetter);
+  stops = {};
+  stops.probe = true;
+  stops.probe_ramps = false;
+  stops.tool_setter_ramps = false;
+  card_.set_input_stops(stops);
+  EXPECT_EQ(engine_->read(reg::kStopCauses), field::kStopCausesProbe);
+  EXPECT_EQ(engine_->read(reg::kStopReaction), kUntouched | field::kStopReactionDriveFault);
+  card_.set_role({AxisRole::kDriveFault, 3}, 0);
+  EXPECT_EQ(engine_->read(reg::role(35)), 0U) << "no input has it";
+}
+
+// On a limit that is active now; it stops nothing then, until it is released.
+TEST_F(CardInputsOnModel, AnOverrideIsOfOneEnd) {
+  card_.set_role({AxisRole::kLimitMinus, 1}, 4);
+  card_.set_role({AxisRole::kLimitPlus, 1}, 8);
+  engine_->set_inputs(12);
+  engine_->wait(200);
+  card_.override_limits(0, 2);
+  EXPECT_EQ(engine_->read(reg::kLimitOverride), 2U << field::kLimitOverridePlusShift);
+  start_line(card_, {0, 5}, 10ms);
+  card_.wait_until_idle(1s);
+  EXPECT_EQ(engine_->positions()[1], 5);
+  start_line(card_, {0, -5}, 10ms);
+  EXPECT_THROW(card_.wait_until_idle(1s), FaultError);
+  EXPECT_EQ(card_.read_fault_text(), "LIMIT (axis 1 minus)");
+  EXPECT_EQ(card_.read_fault_text({"X", "Y"}), "LIMIT (Y minus)");
+}
+
+TEST(CardInputs, RolesHaveNames) {
+  EXPECT_EQ(role_name({AxisRole::kLimitMinus, 0}), "limit minus of axis 0");
+  EXPECT_EQ(role_name({AxisRole::kInPosition, 7}), "in position of axis 7");
+  EXPECT_EQ(role_name(CardRole::kProbe), "probe");
+  EXPECT_EQ(role_name(CardRole::kSpindleAtSpeed), "spindle at speed");
+  EXPECT_EQ(role_name(static_cast<CardRole>(53)), "role 53");
+}
+
+// LIMIT_STATE is not there to be read.
+TEST(CardInputs, FaultsOfACardWithoutThemHaveATextToo) {
+  RegisterStub bus;
+  Card card = Card::open(bus);
+  bus.values[reg::kFault] = field::kFaultTickMismatch | 1U;
+  bus.values[reg::kLimitState] = 0xFFFFFF;
+  bus.forget();
+  EXPECT_EQ(card.read_fault_text({"X"}), "step fault of X, TICK_MISMATCH");
+  EXPECT_THAT(bus.log, ::testing::ElementsAre(test::was_read(reg::kFault)));
 }
 
 TEST_F(CardInputsOnModel, RolesFollowTheirInputs) {
@@ -69,6 +115,21 @@ TEST_F(CardInputsOnModel, RolesFollowTheirInputs) {
   engine_->wait(200);
   EXPECT_EQ(card_.read_roles().limit_minus, 0);
   EXPECT_TRUE(card_.read_roles().feed_hold);
+  // The card's others, each by itself.
+  card_.set_role(CardRole::kCycleStart, 0x10);
+  card_.set_role(CardRole::kToolSetter, 0x20);
+  card_.set_role(CardRole::kProbe, 0x40);
+  for (const std::uint32_t input : {0x10U, 0x20U, 0x40U}) {
+    engine_->set_inputs(8 | input);
+    engine_->wait(200);
+    const ActiveRoles active = card_.read_roles();
+    EXPECT_EQ(active.cycle_start, input == 0x10);
+    EXPECT_EQ(active.tool_setter, input == 0x20);
+    EXPECT_EQ(active.probe, input == 0x40);
+    EXPECT_TRUE(active.feed_hold);
+  }
+  engine_->set_inputs(8);
+  engine_->wait(200);
   // A filter of 10 scans.
   card_.set_input_filter(3, 640us);
   engine_->set_inputs(0);
@@ -87,7 +148,10 @@ TEST_F(CardInputsOnModel, BadArgumentsAreNamed) {
               HasSubstr("home of axis 4: the card has 4 axes"));
   EXPECT_THAT(argument_error([&] { card_.set_role(CardRole::kToolSetter, 0x10000); }),
               HasSubstr("inputs of tool setter: 0x10000: the card has 16 inputs"));
+  EXPECT_THAT(argument_error([&] { card_.read_input_filter(32); }), HasSubstr("filter of input 32: there are 32"));
   EXPECT_THAT(argument_error([&] { card_.set_overtravel(0, 65'536); }), HasSubstr("0 .. 65535"));
+  EXPECT_THAT(argument_error([&] { card_.set_overtravel(4, 0); }),
+              HasSubstr("overtravel of axis 4: the card has 4 axes"));
   EXPECT_THAT(argument_error([&] { card_.override_limits(0, 0x10); }), HasSubstr("the card has 4 axes"));
 }
 

@@ -186,6 +186,20 @@ TEST_F(PlaceOnModel, ALostPlaceIsRefusedUnlessItIsTrusted) {
   EXPECT_EQ(begin_at_place(card_, 2).place.bits.valid, 2) << "of the other axis";
   EXPECT_EQ(begin_at_place(card_, 1, true).place.bits.valid, 3);
   EXPECT_THAT(argument_error([&] { begin_at_place(card_, 4); }), HasSubstr("the card has 2 axes"));
+  card_.set_place(3, false, false);
+  EXPECT_THAT(state_error([&] { begin_at_place(card_, 3); }), HasSubstr("that of axis 0, 1 was lost"));
+}
+
+// In pulses already: they are not written anew.
+TEST(CardPlace, ScalesThatStandStay) {
+  RegisterStub bus(2);
+  bus.values[reg::kPlace] = 3;
+  bus.values[reg::kScales] = kScalesInPulses;
+  Card card = Card::open(bus);
+  bus.forget();
+  EXPECT_FALSE(begin_at_place(card, 3).first);
+  for (const test::Made& made : bus.log)
+    EXPECT_NE(std::get<1>(made), reg::kScales + (std::get<0>(made) ? 0U : 0x1000U));
 }
 
 }  // namespace

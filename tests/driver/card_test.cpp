@@ -46,6 +46,10 @@ TEST_F(CardTest, SettingsOfAnAxisAreOneTransferWithTimesRoundedUp) {
                           wrote(reg::dir_hold(2), 65535), wrote(reg::mode(2), 2U | field::kModeInvertSecond)));
   EXPECT_THAT(bus_.transfers, ElementsAre(5U));
   EXPECT_EQ(card_.timing().pulse_period[2], 12U);
+  settings.invert_first = true;
+  settings.invert_second = false;
+  card_.configure_axis(2, settings);
+  EXPECT_EQ(bus_.log.back(), wrote(reg::mode(2), 2U | field::kModeInvertFirst));
 }
 
 TEST_F(CardTest, BadArgumentsNeverReachTheBus) {
@@ -381,6 +385,7 @@ TEST(Errors, TextsNameWhatTheyAreOf) {
   EXPECT_THAT(RefusedError(6, 17, reg::kStream, "stream").what(), HasSubstr("BAD_FIELD"));
   EXPECT_THAT(RefusedError(8, 0, reg::step_space(3), "axis 3").what(), HasSubstr("STEP_SPACE[3] (0x984)"));
   EXPECT_THAT(RefusedError(0, 0, reg::kStart, "line").what(), HasSubstr("it did not say why"));
+  EXPECT_THAT(RefusedError(10, 0, 0xFFC, "read").what(), HasSubstr("Access to address 0xFFC"));
 }
 
 }  // namespace

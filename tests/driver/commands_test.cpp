@@ -125,6 +125,11 @@ TEST(Commands, WhatStandsBesideThePathIsDecodedAgain) {
   EXPECT_TRUE(pwm.follows);
   EXPECT_EQ(pwm.shift, 31);
   EXPECT_EQ(pwm.gain, 0x5678);
+  const auto fixed = std::get<PwmCommand>(again(PwmCommand{0, 0xFFFF, false, 0, 0}));
+  EXPECT_EQ(fixed.channel, 0);
+  EXPECT_FALSE(fixed.follows);
+  EXPECT_EQ(std::get<DwellCommand>(again(DwellCommand{0x123456789})).clocks, 0x123456789U);
+  EXPECT_TRUE(std::holds_alternative<EndCommand>(again(EndCommand{})));
 }
 
 TEST(Commands, CommandsOfThatThisDriverHasNoneAreNotDecoded) {
@@ -288,6 +293,23 @@ TEST(Commands, LimitsOfAFeedPieceAndADwellAreKept) {
   EXPECT_THAT(refusal_of(WaitInputCommand{1, true, std::uint64_t{1} << 40}), HasSubstr("WAIT_INPUT: count"));
   EXPECT_THAT(refusal_of(WaitInputCommand{32}), HasSubstr("WAIT_INPUT: input 32"));
   EXPECT_THAT(refusal_of(ProbeCommand{32}), HasSubstr("PROBE: input 32"));
+}
+
+TEST(Commands, LimitsOfPulsesOnOutputsAreKept) {
+  EXPECT_EQ(refusal_of(PwmCommand{1, 0xFFFF, true, 31, 0xFFFF}), "");
+  EXPECT_EQ(refusal_of(PwmCommand{2, 1, true, 0, 1}), "PWM: channel 2");
+  EXPECT_EQ(refusal_of(PwmCommand{0, 1, true, 32, 1}), "PWM: shift 32");
+}
+
+// The card counts paths, pieces and barriers, not what takes no time.
+TEST(Commands, WhatTakesNoTimeNeverCountsAsBegun) {
+  for (const Command& command : std::vector<Command>{LineCommand{}, ArcCommand{}, FeedCommand{}, DwellCommand{},
+                                                     EndCommand{}, WaitInputCommand{}, ProbeEndCommand{}}) {
+    EXPECT_TRUE(counts_as_begun(command)) << layout_of(command).name;
+  }
+  for (const Command& command : std::vector<Command>{OutputCommand{}, MarkCommand{}, ProbeCommand{}, PwmCommand{}}) {
+    EXPECT_FALSE(counts_as_begun(command)) << layout_of(command).name;
+  }
 }
 
 TEST(Commands, DecodeRefusesWhatEncodeCannotMake) {

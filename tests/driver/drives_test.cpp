@@ -78,6 +78,9 @@ TEST_F(Drives, RolesOfOutputs) {
   card_.set_health(health);
   EXPECT_EQ(engine_->read(reg::kHealthCauses), field::kFaultWatchdog | field::kHealthCausesNoWatchdog);
   EXPECT_EQ(engine_->read(reg::kChargePump), 500U);
+  health.needs_watchdog = false;
+  card_.set_health(health);
+  EXPECT_EQ(engine_->read(reg::kHealthCauses), field::kFaultWatchdog);
   health.pump_half_period = 65'536us;
   EXPECT_THAT(argument_error([&] { card_.set_health(health); }),
               HasSubstr("charge pump: half a period of 65536000 ns is not up to 65535 clocks at 1000000 Hz"));

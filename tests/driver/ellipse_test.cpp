@@ -165,5 +165,52 @@ TEST(Ellipse, RefusesWhatTheCardCannotDo) {
   EXPECT_THROW(prepare(g), std::invalid_argument);
 }
 
+// Of an arc about an ellipse of 10 and 5 from its right end, with one thing changed.
+template <class Change>
+std::string ellipse_refusal(Change change) {
+  EllipseGeometry g;
+  g.semi_x = 10;
+  g.semi_y = 5;
+  g.start_x = 10;
+  g.end_x = -10;
+  g.end_y = 5;
+  g.sweep = kPi / 2;
+  change(g);
+  try {
+    prepare(g);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Ellipse, RefusalsNameWhatIsWrong) {
+  const auto refusal = [](auto change) { return ellipse_refusal(change); };
+  EXPECT_EQ(refusal([](EllipseGeometry&) {}), "");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.axis_x = 8; }), "arc: axes 8 and 1 span no plane");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.axis_y = 8; }), "arc: axes 0 and 8 span no plane");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.axis_y = 0; }), "arc: axes 0 and 0 span no plane");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.sweep = -0.5; }), "arc: sweep of -0.5 radians");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.sweep = 1e6; }), "arc: sweep of 1000000 radians");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.semi_x = 1; }),
+            "arc: semi-axes 1 and 5 are not within 2 .. 2^20 pulses, in 4 directions");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.semi_x = kMaxSemiAxis + 1; }),
+            "arc: semi-axes 1048577 and 5 are not within 2 .. 2^20 pulses, in 4 directions");
+  // A pulse outside the box may be rounding's, two are not.
+  for (const std::int64_t x : {-12, 12})
+    EXPECT_EQ(refusal([x](EllipseGeometry& g) { g.start_x = x; }),
+              "arc: the start is outside the ellipse's bounding box");
+  for (const std::int64_t y : {-7, 7})
+    EXPECT_EQ(refusal([y](EllipseGeometry& g) { g.start_y = y; }),
+              "arc: the start is outside the ellipse's bounding box");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) {
+              g.start_y = 5;
+              g.end_y = 0;
+            }),
+            "arc: the start is not on the ellipse");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.end_y = 7; }), "arc: the end is outside the ellipse's bounding box");
+  EXPECT_EQ(refusal([](EllipseGeometry& g) { g.end_y = 2; }), "arc: the end is not on the ellipse");
+}
+
 }  // namespace
 }  // namespace trammel::driver

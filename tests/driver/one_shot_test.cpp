@@ -307,6 +307,18 @@ TEST(OneShot, RunsAllPartsOfALongLine) {
   EXPECT_LE(bus.slept, std::chrono::hours(1) + 1s);
 }
 
+TEST(OneShot, ASpeedStartsALineOfItsTime) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  const OneShotPlan plan = start_line(card, {300, 400}, PathSpeed{1000, 1});
+  EXPECT_EQ(plan.clocks(), 500'000U) << "500 pulses of path";
+  const std::uint64_t begun = engine->cycles();
+  card.wait_until_idle(1s);
+  EXPECT_THAT(engine->positions(), ElementsAre(300, 400, 0, 0));
+  EXPECT_GE(engine->cycles() - begun, 499'000U);
+  EXPECT_THROW(start_line(card, {1}, PathSpeed{1, 10'000'000}), ArgumentError) << "longer than one start may be";
+}
+
 // At 1/16 of the ratio a line takes 16 times as long as planned, far beyond the margin.
 TEST(OneShot, ALowRatioAndAHoldAreNoTimeOuts) {
   const auto engine = sim::make_model_engine({});

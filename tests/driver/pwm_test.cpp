@@ -68,6 +68,7 @@ TEST(PwmSettings, AFrequencyIsAPeriodOfWholeClocks) {
   EXPECT_THAT(argument_error([] { pwm_period(0.9, 100'000'000); }), HasSubstr("from 1 Hz"));
   EXPECT_THAT(argument_error([] { pwm_period(1.1e6, 100'000'000); }), HasSubstr("to 1 MHz"));
   EXPECT_THAT(argument_error([] { pwm_period(1e6, 50'000'000); }), HasSubstr("50 clocks"));
+  EXPECT_THAT(argument_error([] { pwm_period(1, 100'000'001); }), HasSubstr("100000001 clocks of the card"));
 }
 
 // The card's rule, in the exact arithmetic of the reference.

@@ -116,6 +116,64 @@ TEST(FrameEngine, Clocks) {
   EXPECT_EQ(bench.requests[2] - bench.requests[1], 4U + 2);
 }
 
+// Whatever comes while it answers is lost, and a frame that begins meanwhile too; the next one is taken.
+TEST(FrameEngine, WhatComesWhileItAnswersIsPassedOver) {
+  EngineBench bench;
+  Request first;
+  first.kind = Kind::Write;
+  first.count = 1;
+  first.number = 1;
+  first.data = {7};
+  Request second = first;
+  second.number = 2;
+  second.data = {8};
+  Endpoint endpoint([](bool, std::uint32_t address, std::uint32_t) { return Endpoint::Answer{false, address}; });
+  Bytes due;
+  for (const std::uint8_t byte : stream_of(first)) endpoint.take(byte, due);
+  Bytes both = stream_of(first);
+  for (const std::uint8_t byte : stream_of(second)) both.push_back(byte);
+  EXPECT_EQ(bench.bring(both, 1), due);
+  EXPECT_EQ(bench.written, first.data);
+  // The beginning of a frame, of which the rest comes behind the reply: it is none.
+  const Bytes stream = stream_of(second);
+  bench.written.clear();
+  Bytes begun = stream_of(Request{});
+  begun.insert(begun.end(), stream.begin(), stream.begin() + 5);
+  bench.bring(begun, 1);
+  EXPECT_TRUE(bench.bring(Bytes(stream.begin() + 5, stream.end())).empty());
+  EXPECT_TRUE(bench.written.empty());
+  EXPECT_FALSE(bench.bring(stream).empty());
+  EXPECT_EQ(bench.written, second.data);
+}
+
+// At a port that takes a byte now and then: in whatever clock it comes, no byte is offered from the next one on.
+TEST(FrameEngine, ANewConnectionEndsTheReplyInAnyClock) {
+  const Bytes stream = stream_of(Request{});
+  unsigned begun = 0;
+  for (unsigned when = 1; when < 300; ++when) {
+    FrameEngine engine;
+    unsigned offered = 0;
+    for (unsigned clock = 0; clock < 1500; ++clock) {
+      FrameEngine::Inputs in;
+      in.byte_valid = clock < stream.size();
+      if (in.byte_valid) in.byte = stream[clock];
+      in.restart = clock == stream.size() + when;
+      in.ack = clock % 5 == 0;
+      in.ready = clock % 11 == 0;
+      const bool offers = engine.outputs().valid;
+      if (clock <= stream.size() + when)
+        offered += offers ? 1U : 0U;
+      else
+        ASSERT_FALSE(offers) << when << ' ' << clock;
+      engine.clock(in);
+    }
+    begun += offered != 0 ? 1U : 0U;
+    EXPECT_TRUE(engine.listening()) << when;
+    EXPECT_EQ(engine.session().epoch(), 1) << when;
+  }
+  EXPECT_GT(begun, 150U) << "replies that had begun";
+}
+
 TEST(FrameEngine, ANewConnectionDropsTheReply) {
   for (const unsigned when : {1U, 8U, 30U, 60U, 200U}) {
     FrameEngine engine;

@@ -222,6 +222,42 @@ TEST(LimitCheck, RestsOnlyWhereNothingChanges) {
   EXPECT_TRUE(rests());
 }
 
+// An override goes in the clock after its switch, at either end.
+TEST(LimitCheck, AnOverrideRestsWhileItsSwitchIsActive) {
+  for (const bool plus : {false, true}) {
+    Limits limits;
+    const auto rests = [&] { return skip::horizon(limits.check, limits.in) != 0; };
+    limits.press(true, true);
+    limits.clock();
+    limits.set(reg::kLimitOverride, plus ? kAxis << 8 : kAxis);
+    EXPECT_TRUE(rests());
+    // The other one stays, so that nothing else tells of it.
+    (plus ? limits.in.roles.limit_plus : limits.in.roles.limit_minus) = 0;
+    EXPECT_FALSE(rests());
+    limits.clock();
+    EXPECT_TRUE(rests());
+    limits.press(true, true);
+    EXPECT_TRUE(limits.step(plus ? Way::Plus : Way::Minus)) << "it has gone";
+  }
+}
+
+// On its ramp the axis keeps what is left of its overtravel; behind it all of it is there again.
+TEST(LimitCheck, OvertravelThatIsUsedRestsOnTheRampAlone) {
+  Limits limits;
+  const auto rests = [&] { return skip::horizon(limits.check, limits.in) != 0; };
+  limits.set(reg::overtravel(2), 3);
+  limits.press(false, true);
+  EXPECT_TRUE(limits.step(Way::Plus));
+  EXPECT_FALSE(rests()) << "the end that it has come into is to be told yet";
+  limits.in.stopping = true;
+  limits.clock();
+  EXPECT_TRUE(rests());
+  limits.in.stopping = false;
+  EXPECT_FALSE(rests());
+  limits.clock();
+  EXPECT_TRUE(rests());
+}
+
 TEST(ButtonHold, FeedHoldHoldsUntilCycleStartIsPressed) {
   ButtonHold buttons;
   InputRoles in;
