@@ -30,6 +30,17 @@ TEST(ReferencePage, AddressesBetweenWordsAreUnknown) {
   }
 }
 
+// Right after reset an access waits longest; with captures the most words are filled.
+TEST(ReferencePage, TheFirstAccessIsAnsweredWithinAnswerClocks) {
+  for (const unsigned axes : {1U, 4U, 5U, 8U}) {
+    Host host(axes, model::RegisterFile::kMaxEngines);
+    EXPECT_TRUE(host.write(reg::step_length(axes - 1), 5));
+    const std::uint64_t bound = axes > 4 ? card_map::constant::kAnswerClocks8Axes : card_map::constant::kAnswerClocks;
+    EXPECT_LE(host.card.cycles(), bound) << axes << " axes";
+    EXPECT_GT(host.card.cycles(), bound - 100) << axes << " axes: the bound says little";
+  }
+}
+
 TEST(ReferencePage, RefusalsOfTheStream) {
   Host host;
   EXPECT_TRUE(host.send(driver::DwellCommand{1}));

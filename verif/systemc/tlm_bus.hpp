@@ -21,7 +21,7 @@ namespace trammel::platform {
 // `time` from `now` on; at most to the end of SystemC's time, at least 0.
 sc_core::sc_time to_sc(std::chrono::nanoseconds time, const sc_core::sc_time& now = sc_core::sc_time_stamp());
 
-// Clocks. The card answers within 600 (ANSWER_CLOCKS_8_AXES), and a port waits for three others at most: a card that
+// Clocks. The card answers within 700 (ANSWER_CLOCKS_8_AXES), and a port waits for three others at most: a card that
 // takes longer than this does not answer at all.
 inline constexpr int kLongestAnswer = 100'000;
 

@@ -38,10 +38,10 @@ package card_map_pkg;
   localparam int CENTRE_FRACTION_BITS = 8;
   // Clocks from a feed tick to the path tick that it is
   localparam int PATH_DELAY_CLOCKS = 3;
-  // Clocks within which every access is answered with up to 7 axes
-  localparam int ANSWER_CLOCKS = 400;
-  // Clocks within which every access is answered with 8 axes
-  localparam int ANSWER_CLOCKS_8_AXES = 600;
+  // Clocks within which every access is answered with up to 4 axes
+  localparam int ANSWER_CLOCKS = 500;
+  // Clocks within which every access is answered with 5 to 8 axes
+  localparam int ANSWER_CLOCKS_8_AXES = 700;
   // Flag of FEED beside its class: the ticks make no steps
   localparam int PIECE_SILENT = 4;
   // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force

@@ -43,9 +43,10 @@ inline constexpr std::uint32_t kAccumulatorHandoverClocks =
     30;  // Clocks within which an arc begins once the accumulator is free
 inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a centre in ARC's deviation and gradients
 inline constexpr std::uint32_t kPathDelayClocks = 3;     // Clocks from a feed tick to the path tick that it is
-inline constexpr std::uint32_t kAnswerClocks = 400;  // Clocks within which every access is answered with up to 7 axes
-inline constexpr std::uint32_t kAnswerClocks8Axes = 600;  // Clocks within which every access is answered with 8 axes
-inline constexpr std::uint32_t kPieceSilent = 4;          // Flag of FEED beside its class: the ticks make no steps
+inline constexpr std::uint32_t kAnswerClocks = 500;  // Clocks within which every access is answered with up to 4 axes
+inline constexpr std::uint32_t kAnswerClocks8Axes =
+    700;                                          // Clocks within which every access is answered with 5 to 8 axes
+inline constexpr std::uint32_t kPieceSilent = 4;  // Flag of FEED beside its class: the ticks make no steps
 inline constexpr std::uint32_t kPieceDoubling =
     8;  // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force
 inline constexpr std::uint32_t kMaxSlewShift = 3;  // The most doublings of SLEW that a piece may have
