@@ -34,6 +34,10 @@ TEST_F(Linuxcnc, ProbesAlike) {
   expect_same("G21 G90 F50\nG0 X1 Y2 Z5\nG38.2 Z-3\nG0 Z[#5063+2]\nX[#5061*2] Y#5062\nM2\n");
 }
 
+TEST_F(Linuxcnc, CountsTurnsAlike) {
+  expect_same("G21 G90 F60\nG2 X0 Y0 I5 P4\nG61 G2 X0 Y0 I5 P3\nG61.1 G3 X10 Y0 I5 P2\nM2\n");
+}
+
 TEST_F(Linuxcnc, LocalOriginsAreTheOffsetOfG92) {
   expect_same(
       "G21 G90\nG0 X10\nG92 X3\nG52 X5\nG0 X1\nG52 Y1\nG0 X1 Y0\nG92.2\nG0 X2 Y0\nG92.3\nG0 X1 Y0\n"
