@@ -61,18 +61,22 @@ void calibrate_file(const CalibrateArguments& arguments) {
 
 void add_calibrate_command(CLI::App& app) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = app.add_subcommand("calibrate", "steps_per_mm of an axis from a measured distance");
+  CLI::App* command =
+      app.add_subcommand("calibrate", "calculate steps_per_mm of an axis from a commanded and a measured distance");
   command->add_option("axis", arguments->measured.axis, "letter of the axis")->required()->type_name("AXIS");
-  command->add_option("commanded", arguments->measured.commanded, "mm (degrees) that it was told to move")
+  command
+      ->add_option("commanded", arguments->measured.commanded,
+                   "distance that the axis was commanded to move, mm (degrees)")
       ->required()
       ->type_name("COMMANDED");
-  command->add_option("measured", arguments->measured.actual, "mm (degrees) that it moved")
+  command->add_option("measured", arguments->measured.actual, "distance that the axis moved, as measured, mm (degrees)")
       ->required()
       ->type_name("MEASURED");
   arguments->machine.add_file_to(*command);
-  command->add_flag("--write", arguments->write, "change the number in the machine file, and nothing else there");
+  command->add_flag("--write", arguments->write,
+                    "write the new number to the machine file, and change nothing else there (default: only show it)");
   command->add_flag("--force", arguments->measured.force,
-                    "take it, too, where the axis moved less than half or more than twice as far as commanded");
+                    "accept a measured distance of less than half or more than twice the commanded one");
   command->callback([arguments] { calibrate_file(*arguments); });
 }
 

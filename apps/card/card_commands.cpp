@@ -347,10 +347,13 @@ void drives(const LookOptions& options) {
 }
 
 void add_drives_command(CLI::App& app, const std::shared_ptr<LookOptions>& options) {
-  CLI::App* command = app.add_subcommand("drives", "enable the drives by order, end that order, or show them");
+  CLI::App* command = app.add_subcommand(
+      "drives", "show whether the drives of an external card are enabled, enable them (on), or end that order (off)");
   options->machine.add_to(*command);
   options->card.add_to(*command);
-  command->add_option("order", options->order, "on or off; without it the state is shown")
+  command
+      ->add_option("order", options->order,
+                   "on: enable the drives until off. off: end that order (default: show the state only)")
       ->check(CLI::IsMember({"on", "off"}))
       ->type_name("ORDER");
   command->callback([options] { drives(*options); });
@@ -361,17 +364,18 @@ void add_drives_command(CLI::App& app, const std::shared_ptr<LookOptions>& optio
 void add_card_commands(CLI::App& app) {
   auto options = std::make_shared<LookOptions>();
   add_drives_command(app, options);
-  CLI::App* dump_command = app.add_subcommand("dump", "all registers of a card by name");
+  CLI::App* dump_command = app.add_subcommand("dump", "print all registers of a card by name");
   options->card.add_to(*dump_command);
   dump_command->callback(
       [options] { look_at(options->card, Purpose::kRead, [](Card& card, transport::Connection*) { dump(card); }); });
-  CLI::App* monitor_command = app.add_subcommand("monitor", "what a card does, as a live table");
+  CLI::App* monitor_command =
+      app.add_subcommand("monitor", "show a card's state, queues, positions and inputs in a table that is updated");
   options->card.add_to(*monitor_command);
-  monitor_command->add_option("--interval", options->interval, "between two looks, in card time")
+  monitor_command->add_option("--interval", options->interval, "time between two updates, seconds of card time")
       ->check(CLI::Range(0.001, 3600.0).description(""))
       ->type_name("SECONDS")
       ->capture_default_str();
-  monitor_command->add_option("--looks", options->looks, "end after so many (0: never)")
+  monitor_command->add_option("--looks", options->looks, "end after this number of updates. 0 is no limit")
       ->transform(whole_number(0, 1'000'000'000))
       ->type_name("N")
       ->capture_default_str();
@@ -379,11 +383,14 @@ void add_card_commands(CLI::App& app) {
     if (!options->card.url()) tell("note", "this is a fresh simulated card, at rest; --card shows another one");
     look_at(options->card, Purpose::kRead, [&](Card& card, transport::Connection*) { monitor(card, *options); });
   });
-  CLI::App* test_command = app.add_subcommand("selftest", "try a card's link, registers and clock; nothing moves");
+  CLI::App* test_command = app.add_subcommand("selftest", "test a card's link, registers and clock; nothing moves");
   options->card.add_to(*test_command);
-  test_command->add_flag("--inputs", options->inputs, "wait for each input that has a role to be pressed and released");
+  test_command->add_flag(
+      "--inputs", options->inputs,
+      "also test the inputs that have a role: for each, wait until you have pressed and released it");
   test_command
-      ->add_option("--switch-time", options->switch_time, "with --inputs: the longest wait for each, in card time")
+      ->add_option("--switch-time", options->switch_time,
+                   "with --inputs: longest wait for a press or a release, seconds of card time")
       ->check(CLI::Range(0.001, 3600.0).description(""))
       ->type_name("SECONDS")
       ->capture_default_str();

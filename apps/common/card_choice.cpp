@@ -64,20 +64,23 @@ void clear_with_note(driver::Card& card) {
 void CardChoice::add_to(CLI::App& command) {
   command
       .add_option("--card", text,
-                  "a card outside: tcp://HOST:PORT (of `trammel serve`), serial:/dev/ttyUSB0, spi:/dev/spidev0.0, "
-                  "mmap:/dev/uio0 (default: sim:, simulated here)")
+                  "use an external card: tcp://HOST:PORT (of `trammel serve`), serial:/dev/ttyUSB0, spi:/dev/spidev0.0 "
+                  "or mmap:/dev/uio0 (default: sim:, a card that this command simulates)")
       ->type_name("URL");
 }
 
 void CardChoice::add_to_mover(CLI::App& command) {
   add_to(command);
-  command.add_flag("--clear-faults", clear_faults, "with --card: clear the faults that the card has from before");
-  command.add_flag("--trust-position", trust_position,
-                   "with --card: begin though the card's place was lost, since no step was");
+  command.add_flag("--clear-faults", clear_faults,
+                   "with --card: clear the card's faults first, and begin where the machine stands. Needed after a "
+                   "fault has stopped the card");
+  command.add_flag(
+      "--trust-position", trust_position,
+      "with --card: begin although the card marks its position as lost. Use it only if you know that no step was lost");
   command
       .add_option("--resume-file", resume_file,
-                  "with --card: where a run keeps what --resume needs (default: a file named after the card in the "
-                  "folder trammel of the user's state folder)")
+                  "with --card: file in which a run keeps what --resume needs (default: a file named after the card, "
+                  "in trammel/ of the user's state folder)")
       ->type_name("FILE");
 }
 

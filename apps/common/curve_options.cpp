@@ -59,13 +59,19 @@ Curve named(const CurveChoice& choice) {
 }  // namespace
 
 void CurveChoice::add_to(CLI::App& command) {
-  command.add_option("--line", line, "a line between two points, pulses")->type_name("X0,Y0,X1,Y1");
-  command.add_option("--circle", circle, "a full circle about (0,0) from (R,0)")->type_name("R");
-  command.add_option("--arc", arc, "an arc of a circle from start about centre to end; end == start: a full turn")
+  command.add_option("--line", line, "line from X0,Y0 to X1,Y1, pulses")->type_name("X0,Y0,X1,Y1");
+  command.add_option("--circle", circle, "full circle about (0,0), begun at (R,0), pulses")->type_name("R");
+  command
+      .add_option(
+          "--arc", arc,
+          "arc from X0,Y0 about the centre CX,CY to X1,Y1, pulses. If end and start are equal, it is a full circle")
       ->type_name("X0,Y0,CX,CY,X1,Y1");
-  command.add_option("--ellipse", ellipse, "a full ellipse about (0,0) from (A,0), semi-axis A along x")
+  command
+      .add_option("--ellipse", ellipse,
+                  "full ellipse about (0,0), begun at (A,0), with semi-axis A along x and B along y, pulses")
       ->type_name("A,B");
-  command.add_flag("--clockwise", clockwise, "turn clockwise, x to the right and y up (default: counter-clockwise)");
+  command.add_flag("--clockwise", clockwise,
+                   "run along the curve clockwise, with x to the right and y up (default: counter-clockwise)");
 }
 
 Curve CurveChoice::curve() const {
@@ -84,10 +90,10 @@ Curve CurveChoice::curve() const {
 void VelocityChoice::add_to(CLI::App& command) {
   // As make_interpolator() takes them.
   constexpr std::uint64_t kMax = std::uint64_t{1} << 30;
-  command.add_option("--clock", clock_hz, "clock of one-shot and divider methods (default 10000000)")
+  command.add_option("--clock", clock_hz, "clock of the one-shot and divider methods (default 10000000)")
       ->transform(whole_number(1, kMax, "Hz"))
       ->type_name("HZ");
-  command.add_option("--velocity", velocity, "lines a second, the second paper's v (default 5000)")
+  command.add_option("--velocity", velocity, "lines per second, v of the second paper (default 5000)")
       ->transform(whole_number(1, kMax, "lines/s"));
 }
 

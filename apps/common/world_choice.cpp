@@ -41,14 +41,14 @@ void refuse_wired_inputs(const world::World& world, const std::vector<simulation
 void WorldChoice::add_to(CLI::App& command) {
   CLI::Option* const option =
       command
-          .add_option(
-              "--world", file,
-              "machine behind the simulated card's pins: carriages, switches, buttons; default is the built-in one")
+          .add_option("--world", file,
+                      "simulate a machine behind the simulated card's pins, with carriages, switches and buttons. FILE "
+                      "is a world file, or 'default' for the built-in one")
           ->type_name("FILE");
   command
-      .add_option(
-          "--world-events", events,
-          "what is pressed at its buttons, a line each: at 1.5 s press estop, at 2 s release estop, at 3 s alarm X")
+      .add_option("--world-events", events,
+                  "script that presses the world's buttons, one event per line, such as: at 1.5 s press estop; at 2 s "
+                  "release estop; at 3 s alarm X")
       ->type_name("FILE")
       ->needs(option);
 }

@@ -116,8 +116,9 @@ void home(const HomeOptions& options) {
 
 void add_home_command(CLI::App& app) {
   auto options = std::make_shared<HomeOptions>();
-  CLI::App* command = app.add_subcommand("home", "let axes find their switches, and with them machine zero");
-  command->add_option("axes", options->words, "letters of the axes; none: all that the machine file can home")
+  CLI::App* command =
+      app.add_subcommand("home", "home axes of an external card: move each to its switch, and set machine zero by it");
+  command->add_option("axes", options->words, "letters of the axes (default: all that the machine file can home)")
       ->type_name("AXIS");
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);

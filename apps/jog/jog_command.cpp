@@ -212,20 +212,21 @@ void jog(const JogArguments& options) {
 
 void add_jog_command(CLI::App& app) {
   auto options = std::make_shared<JogArguments>();
-  CLI::App* command = app.add_subcommand("jog", "move axes of a card by hand: by a distance, or by keys");
+  CLI::App* command =
+      app.add_subcommand("jog", "move axes of an external card by a distance, or with keys of the terminal");
   command
       ->add_option("distances", options->words,
-                   "axes and how far each goes from here, mm or degrees, such as X10 Y-0.5; none: by the keys of the "
-                   "terminal")
+                   "axes, each with its distance from where it stands, mm or degrees, such as X10 Y-0.5 (default: "
+                   "none; keys of the terminal move the axes)")
       ->type_name("X10");
   command
       ->add_option("--speed", options->speed,
-                   "mm/s along the path, with keys of each axis (default: a quarter of the slowest axis's "
-                   "max_velocity; with keys of each axis's)")
+                   "speed along the path, or of each axis with keys, mm/s (default: a quarter of the slowest axis's "
+                   "max_velocity; with keys, a quarter of each axis's own)")
       ->check(positive());
   command->add_flag("--override-limits", options->override_limits,
-                    "limits that are active now stop nothing until they are released: to move away where the card "
-                    "bars both directions (CoreXY, one switch for both ends)");
+                    "ignore the limits that are active now until they are released. Needed to move away from a limit "
+                    "if the card bars both directions (CoreXY, one switch for both ends)");
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);
   command->callback([options] { jog(*options); });

@@ -176,11 +176,12 @@ void add_place_commands(CLI::App& app) {
     command->callback([options, run] { run(*options); });
     return command;
   };
-  add("position", "where the machine stands, in machine coordinates, and whether that is valid and homed", position);
-  CLI::App* zero_command = add("zero", "set machine zero of the named axes where they stand", zero);
+  add("position", "show the position of each axis in machine coordinates, and whether it is valid and homed", position);
+  CLI::App* zero_command = add("zero", "set machine zero of the named axes to where they stand", zero);
   zero_command->add_option("axes", options->axes, "letters of the axes")->required()->type_name("AXIS");
-  zero_command->add_flag("--homed", options->homed, "they stand at their reference: they count as homed");
-  add("recover", "what stopped the card, where it stands, and what to do next", recover);
+  zero_command->add_flag("--homed", options->homed,
+                         "also mark the axes as homed. Use it if they stand at their reference");
+  add("recover", "tell what stopped an external card, where the machine stands, and what to do next", recover);
 }
 
 }  // namespace trammel::app

@@ -79,60 +79,69 @@ void refuse_overlaps(const std::vector<OperatorEvent>& events) {
 void MotionChoice::add_to(CLI::App& command) {
   command
       .add_option("--override", percent,
-                  "percent of the planned speed, from the start on; 0 to 100, or to 100 times the machine file's "
-                  "max_override (default: 100)")
+                  "feed override from the start on: percent of the planned speed, 0 to 100, or to 100 times "
+                  "max_override of the machine file (default: 100)")
       ->type_name("PERCENT");
   command
-      .add_option("--rapid-override", rapid_percent, "percent of the planned speed of rapids, 0 to 100 (default: 100)")
+      .add_option("--rapid-override", rapid_percent,
+                  "override of rapids (G0, G28): percent of the planned speed, 0 to 100 (default: 100)")
       ->type_name("PERCENT");
-  command.add_option("--override-at", override_at, "change the override at a time of the card (repeatable)")
+  command
+      .add_option("--override-at", override_at, "change the feed override to PERCENT at this card time (repeatable)")
       ->type_name("SECONDS:PERCENT")
       ->allow_extra_args(false);
-  command
-      .add_option("--hold-at", hold_at,
-                  "hold at a time of the card, for so many seconds from the request on (repeatable)")
+  command.add_option("--hold-at", hold_at, "hold at this card time, and resume DURATION seconds later (repeatable)")
       ->type_name("SECONDS:DURATION")
       ->allow_extra_args(false);
   command
-      .add_option("--input-at", input_at,
-                  fmt::format("set an input of the simulated card (0 to {}) to a level (0 or 1) at a time of the card "
-                              "(repeatable; before, all are 0). Input estop: the emergency stop's button, 1 pressed",
-                              sim::kInputs - 1))
+      .add_option(
+          "--input-at", input_at,
+          fmt::format(
+              "set an input of the simulated card (0 to {}) to a level (0 or 1) at this card time (repeatable). Until "
+              "then the input is at rest. Input estop is the emergency stop button: 1 pressed, 0 released",
+              sim::kInputs - 1))
       ->type_name("SECONDS:INPUT:LEVEL")
       ->allow_extra_args(false);
-  command.add_option("--feed-scale", feed_scale, "factor on every programmed feed, 0.001 to 1000 (default: 1)")
+  command
+      .add_option("--feed-scale", feed_scale,
+                  "multiply every programmed feed by this factor, 0.001 to 1000 (default: 1)")
       ->check(between(0.001, 1000, "a factor"))
       ->type_name("FACTOR");
   command
-      .add_option(
-          "--limit-bus", bytes_per_second,
-          "the bus carries so many bytes a second of card time, 4 a word, both ways together (default: no limit)")
+      .add_option("--limit-bus", bytes_per_second,
+                  "limit the simulated bus to this many bytes per second of card time. Each word read or written "
+                  "counts 4 bytes (default: no limit)")
       ->check(between(1, 1e9, "bytes a second"))
       ->type_name("BYTES_PER_SECOND");
   command
-      .add_option("--from-line", first_line,
-                  "begin at this line; those before it set modes, offsets, position and outputs alone")
+      .add_option(
+          "--from-line", first_line,
+          "begin at line N of the program. The lines before it only set modes, offsets, outputs and the position")
       ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
       ->type_name("N");
   command
       .add_option("--arcs", arcs,
-                  "what makes arcs: generator, accumulator-8 (in 8 directions), accumulator (in 4; helices: "
-                  "chords), or chords; the next of these where one cannot")
+                  "how to make arcs. generator: the card's arc generator. accumulator-8: unit steps in 8 directions. "
+                  "accumulator: unit steps in 4 directions; helices become chords. chords: straight lines. If one "
+                  "cannot make an arc, the next one is used")
       ->check(CLI::IsMember({"generator", "accumulator-8", "accumulator", "chords"}))
       ->capture_default_str();
   command
       .add_option("--profile", profile,
-                  "how the speed changes: trapezoid or s-curve (default: s-curve where every axis has a max_jerk)")
+                  "how the speed changes. trapezoid: constant acceleration. s-curve: the acceleration changes by "
+                  "max_jerk at most (default: s-curve if every axis has a max_jerk, else trapezoid)")
       ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
       ->type_name("PROFILE");
   command
       .add_option("--accept", accept,
-                  "leave out the lines that begin with these words, as those of heaters and fans (repeatable)")
+                  "leave out the lines that begin with these words, such as those for heaters and fans (repeatable)")
       ->type_name("M900,...")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
-  command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
+  command.add_flag("--single-block", single_block,
+                   "stop at the end of each line of the program, and send the next line when the card is idle");
+  command.add_flag("--no-block-delete", run_deleted,
+                   "run the lines that begin with '/', too (default: leave them out)");
 }
 
 simulation::Operation MotionChoice::operation(double max_percent) const {

@@ -193,7 +193,7 @@ the command line, the machine file or the program was refused; nothing has moved
 void add_shell_commands(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* completion =
-      app.add_subcommand("completion", "print a script that completes this command's words in a shell");
+      app.add_subcommand("completion", "print a script with which a shell completes trammel's commands and options");
   completion->add_option("shell", *shell, "the shell: bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
