@@ -27,7 +27,8 @@ std::vector<std::int64_t> numbers(const char* option, std::string_view text, std
   while (true) {
     std::int64_t value = 0;
     const auto [next, error] = std::from_chars(at, end, value);
-    if (error == std::errc::result_out_of_range) throw UsageError(fmt::format("{} {}: beyond 64 bits", option, text));
+    if (error == std::errc::result_out_of_range)
+      throw UsageError(fmt::format("{} {}: a number does not fit in 64 bits", option, text));
     if (error != std::errc{}) throw UsageError(fmt::format("{} {}: not whole numbers of pulses", option, text));
     result.push_back(value);
     at = next;
@@ -36,7 +37,7 @@ std::vector<std::int64_t> numbers(const char* option, std::string_view text, std
     ++at;
   }
   if (result.size() != count) {
-    throw UsageError(fmt::format("{} {}: {} numbers, {} are needed", option, text, result.size(), count));
+    throw UsageError(fmt::format("{} {}: {} numbers given, {} needed", option, text, result.size(), count));
   }
   return result;
 }
@@ -52,7 +53,8 @@ Curve named(const CurveChoice& choice) {
     return Arc{{v[2], v[3]}, {v[0], v[1]}, {v[4], v[5]}, choice.clockwise, 0, 0};
   }
   const auto v = numbers("--ellipse", *choice.ellipse, 2);
-  if (v[0] < 1 || v[1] < 1) throw UsageError(fmt::format("--ellipse {}: a semi-axis below 1 pulse", *choice.ellipse));
+  if (v[0] < 1 || v[1] < 1)
+    throw UsageError(fmt::format("--ellipse {}: each semi-axis must be 1 pulse or more", *choice.ellipse));
   return interpolation::make_ellipse(v[0], v[1], choice.clockwise);
 }
 
@@ -77,7 +79,7 @@ void CurveChoice::add_to(CLI::App& command) {
 Curve CurveChoice::curve() const {
   const int count = line.has_value() + circle.has_value() + arc.has_value() + ellipse.has_value();
   if (count != 1) throw UsageError("give one of --line, --circle, --arc and --ellipse");
-  if (circle && numbers("--circle", *circle, 1)[0] < 0) throw UsageError("--circle: a negative radius");
+  if (circle && numbers("--circle", *circle, 1)[0] < 0) throw UsageError("--circle: the radius must not be negative");
   const Curve result = named(*this);
   try {
     interpolation::check_curve(result);

@@ -32,7 +32,8 @@ void refuse_wired_inputs(const world::World& world, const std::vector<simulation
                        (event.kind == Kind::kEmergencyStop && world.has_emergency_stop());
     if (!wired) continue;
     const std::string pin = event.kind == Kind::kInput ? fmt::format("input {}", event.input) : "the emergency stop";
-    throw UsageError(fmt::format("--input-at: the world has wired {}: its events press it (--world-events)", pin));
+    throw UsageError(fmt::format(
+        "--input-at: {} is wired to a switch or button of the world. Press it with --world-events instead", pin));
   }
 }
 

@@ -56,9 +56,10 @@ std::string title_of(const CurveChoice& choice) {
 
 void check_size(const interpolation::Curve& curve) {
   const std::uint64_t pulses = measure::pulses_along(curve);
-  if (pulses == 0) throw UsageError("a line without length: nothing to compare");
+  if (pulses == 0) throw UsageError("the line has no length, so there is nothing to compare");
   if (pulses > measure::kMaxPulses) {
-    throw UsageError(fmt::format("a curve of about {} pulses: at most {} are compared", pulses, measure::kMaxPulses));
+    throw UsageError(
+        fmt::format("the curve has about {} pulses; at most {} can be compared", pulses, measure::kMaxPulses));
   }
 }
 
@@ -108,7 +109,7 @@ void compare_curve(const CompareOptions& options) {
 }
 
 void compare_random(const CompareOptions& options) {
-  if (options.curve.given()) throw UsageError("--random takes no curve of its own");
+  if (options.curve.given()) throw UsageError("--random: give it without --line, --circle, --arc and --ellipse");
   if (options.plot) throw UsageError("--plot: a picture is made of one curve, not of --random lines");
   measure::RandomLines lines;
   lines.count = *options.random;

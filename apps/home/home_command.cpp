@@ -108,7 +108,7 @@ void home_on(driver::Card& card, const HomeOptions& options) {
 
 void home(const HomeOptions& options) {
   const auto url = options.card.url();
-  if (!url) throw UsageError("home: needs --card: a simulated card of this process has no switches to find");
+  if (!url) throw UsageError("home: needs --card, because a card that this command simulates has no switches");
   with_card(*url, Purpose::kMove, [&](driver::Card& card, transport::Connection&) { home_on(card, options); });
 }
 

@@ -94,7 +94,7 @@ void info_in_simulation(const InfoArguments& options) {
   outputs.check();
   sim::SimulationOptions engine_options = options.engine.options(options.axes, kInfoClock, kInfoClock);
   if (trace != nullptr && simulation::traced_axes(options.axes) != options.axes) {
-    throw UsageError(fmt::format("--trace: cards of 4 and of 8 axes are built for it, not of {}", options.axes));
+    throw UsageError(fmt::format("--trace: works only on cards with 4 or 8 axes, not with {}", options.axes));
   }
   outputs.open();
   if (trace != nullptr) engine_options.trace->path = trace->path_to_write();

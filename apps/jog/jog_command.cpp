@@ -60,7 +60,7 @@ void add_word(const std::string& word, const machine::Machine& machine, Distance
   const char* const end = word.data() + word.size();
   const auto [rest, error] = std::from_chars(word.data() + 1, end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value)) throw wrong("the distance must be a number");
-  if ((distances.named >> *axis & 1U) != 0) throw wrong("the axis stands twice");
+  if ((distances.named >> *axis & 1U) != 0) throw wrong("the axis is given twice");
   distances.named |= 1U << *axis;
   distances.by[*axis] = value;
 }
@@ -95,7 +95,7 @@ void move_by(run::Jog& jog, const run::MachinePosition& position, const machine:
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const double pulse = 1 / machine.axes[axis].steps_per_mm;
     if (std::abs(at[axis] - from[axis] - distance[axis]) <= pulse) continue;
-    tell("note", fmt::format("{} went by {:.4f} of {:.4f}: a soft limit (min or max) is in the way",
+    tell("note", fmt::format("{} moved by {:.4f} instead of {:.4f}, because a soft limit (min or max) is in the way",
                              machine.axes[axis].letter, at[axis] - from[axis], distance[axis]));
   }
 }
@@ -198,7 +198,7 @@ void jog_on(driver::Card& card, const JogArguments& options) {
 
 void jog(const JogArguments& options) {
   const auto url = options.card.url();
-  if (!url) throw UsageError("jog: name the card by --card: a simulated one of this command's own would end with it");
+  if (!url) throw UsageError("jog: needs --card, because a card that this command simulates ends with the command");
   if (options.override_limits && options.words.empty()) {
     throw UsageError("--override-limits: name axes and distances that lead away from the limit, such as X-5");
   }

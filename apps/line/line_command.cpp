@@ -381,8 +381,9 @@ void refuse_other_line(const LineArguments& options) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
   if (options.no_ramp) return;
-  refuse("--max-velocity", !options.max_velocity.empty(), "for a line with --no-ramp; else --set axis.x.max_velocity");
-  refuse("--slow", options.slow, "for a line with --no-ramp: one with ramps always keeps the machine's limits");
+  refuse("--max-velocity", !options.max_velocity.empty(),
+         "only with --no-ramp. With ramps, --set axis.x.max_velocity limits the speed");
+  refuse("--slow", options.slow, "only with --no-ramp. With ramps, a line always keeps the machine's limits");
 }
 
 void line_in_simulation(const LineArguments& options) {

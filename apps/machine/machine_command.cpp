@@ -16,7 +16,7 @@ struct MachineArguments {
 };
 
 void check(const MachineArguments& options) {
-  if (!options.check) throw UsageError("machine: give --check");
+  if (!options.check) throw UsageError("machine: needs --check");
   to_standard_output(stop_text(options.machine.load()));
 }
 

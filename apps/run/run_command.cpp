@@ -71,17 +71,18 @@ void refuse_contradictions(const RunArguments& options) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
   if (options.stream) {
-    refuse("--pipe-limit", options.pipe_limit.has_value(), "nothing is copied with --stream");
-    refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
-    refuse("--report", options.report.has_value(), "needs the whole program first, not --stream");
+    refuse("--pipe-limit", options.pipe_limit.has_value(), "not with --stream, which copies nothing");
+    refuse("--plot", options.plot.has_value(), "needs the whole program before the run, so not with --stream");
+    refuse("--report", options.report.has_value(), "needs the whole program before the run, so not with --stream");
   }
-  refuse("--report-window", options.report_window && !options.report, "there is no --report");
-  refuse("--resume", options.resume && options.stream, "needs the whole program first, not --stream");
-  refuse("--resume", options.resume && options.motion.first_line != 1, "begins at its own place, not at --from-line");
+  refuse("--report-window", options.report_window && !options.report, "needs --report");
+  refuse("--resume", options.resume && options.stream, "needs the whole program before the run, so not with --stream");
+  refuse("--resume", options.resume && options.motion.first_line != 1,
+         "not with --from-line: it begins where the run was interrupted");
   refuse("--report", options.report && !report::page_is_built(), report::kHowToBuildPage);
-  refuse("--parameters", options.parameters == "-", "needs a file: it is read, too");
+  refuse("--parameters", options.parameters == "-", "needs a file, because it is also read");
   if (!options.check) return;
-  constexpr const char* kWhy = "nothing runs with --check";
+  constexpr const char* kWhy = "not with --check, which runs nothing";
   refuse("--steps", options.steps.has_value(), kWhy);
   refuse("--path-steps", options.path_steps.has_value(), kWhy);
   refuse("--outputs", options.outputs.has_value(), kWhy);
@@ -94,9 +95,11 @@ void refuse_contradictions(const RunArguments& options) {
 
 void refuse_rapids_at_zero(const RunArguments& options, double rapid_percent, const run::Plan& plan) {
   if (rapid_percent != 0) return;
-  if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
+  if (options.stream)
+    throw UsageError("--rapid-override: 0 needs the whole program before the run, so not with --stream");
   if (plan.rapids == 0) return;
-  throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
+  throw UsageError(fmt::format(
+      "--rapid-override: at 0 percent this program would never finish, because it has {} rapids", plan.rapids));
 }
 
 void tell_of_nothing(const run::Plan& plan) {
@@ -271,7 +274,8 @@ simulation::RunOptions simulation_options(const RunArguments& options, const mac
 void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double planned_seconds) {
   if (const auto text = long_run_note(engine, planned_seconds)) tell("note", *text);
   if (engine.axes != axes) {
-    tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
+    tell("note", fmt::format("the trace shows a card with {} axes, because only cards with 4 or 8 axes can be traced",
+                             engine.axes));
   }
 }
 
@@ -377,7 +381,8 @@ void write_results(const Simulation& of, PageListeners& listeners, const simulat
 void run_in_simulation(const RunArguments& options) {
   refuse_contradictions(options);
   if (const auto url = options.card.url()) return run_on_card(options, *url);
-  if (options.resume) throw UsageError("--resume: a simulated card ends with its run; give it with --card");
+  if (options.resume)
+    throw UsageError("--resume: needs --card, because a run on a card that this command simulates cannot be resumed");
   SimulationFiles files(options);
   const machine::Machine machine = options.machine.load();
   warn(jerk_warnings(machine));

@@ -31,7 +31,7 @@ using namespace std::chrono_literals;
 
 serve::Settings settings_of(const ServeOptions& options) {
   if (options.token && !serve::is_token(*options.token)) {
-    throw UsageError("--token: 1 to 64 letters, digits, '-' and '_'");
+    throw UsageError("--token: must be 1 to 64 letters, digits, '-' and '_'");
   }
   serve::Settings settings;
   settings.token = options.token.value_or(serve::random_token());
@@ -52,7 +52,7 @@ std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
     return options.terminal ? transport::open_pseudo_terminal() : transport::listen_tcp(options.listen, options.port);
   } catch (const driver::LinkError& error) {
     const bool has_port = std::count(options.listen.begin(), options.listen.end(), ':') == 1;
-    throw UsageError(fmt::format("serve: {}{}", error.what(), has_port ? ": --port takes the port" : ""));
+    throw UsageError(fmt::format("serve: {}{}", error.what(), has_port ? ". Give the port with --port" : ""));
   }
 }
 
@@ -103,9 +103,11 @@ void serve_card(const ServeOptions& options) {
   end_serving_at_signals();
   if (!options.terminal && !is_loopback(options.listen)) {
     const bool any = options.listen == "0.0.0.0" || options.listen == "::";
-    tell("warning", fmt::format("--listen {}: the token travels unencrypted, and who has it moves the card: serve it "
-                                "only in a network that you trust{}",
-                                options.listen, any ? "; others name this machine in place of this address" : ""));
+    tell("warning",
+         fmt::format("--listen {}: the token is transmitted unencrypted, and whoever has it can move the card. Serve "
+                     "it only in a network that you trust{}",
+                     options.listen,
+                     any ? "; other computers connect to this computer's own address instead of this one" : ""));
   }
   tell_where(*listener, settings.token);
   bool met = false;

@@ -178,10 +178,10 @@ trammel \- {}
 {}.SH EXIT STATUS
 .TP
 .B 0
-all was done
+the command was completed
 .TP
 .B 1
-something failed on the way: a file that could not be written, a card that stopped, a mismatch
+the command failed after it had begun: a file could not be written, the card stopped, or card and model differ
 .TP
 .B 2
 the command line, the machine file or the program was refused; nothing has moved

@@ -88,7 +88,7 @@ void ask_world(const WorldOptions& options) {
   } catch (const driver::ArgumentError& error) {
     throw UsageError(fmt::format("world: {}", error.what()));
   } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(fmt::format("world: the server's answer is none: {}", error.what()));
+    throw std::runtime_error(fmt::format("world: the server's answer cannot be read: {}", error.what()));
   }
 }
 
