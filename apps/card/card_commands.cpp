@@ -356,7 +356,8 @@ void add_drives_command(CLI::App& app, const std::shared_ptr<LookOptions>& optio
   options->card.add_to(*command);
   command
       ->add_option("order", options->order,
-                   "on: enable the drives until off. off: end that order (default: show the state only)")
+                   "on: enable the drives until `trammel drives off`, also while nothing moves. off: end that order "
+                   "(default: show the state)")
       ->check(CLI::IsMember({"on", "off"}))
       ->type_name("ORDER");
   command->callback([options] { drives(*options); });

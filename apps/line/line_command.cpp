@@ -422,12 +422,12 @@ void add_line_command(CLI::App& app) {
       ->check(pulses())
       ->required()
       ->type_name("X,Y,...");
-  auto* velocity = command
-                       ->add_option("--velocity", options->velocity,
-                                    "lines per second, v of the second paper: the line takes 1/v seconds")
-                       ->check(positive());
+  auto* velocity =
+      command->add_option("--velocity", options->velocity, "speed in lines per second, v of the second paper")
+          ->check(positive());
   auto* duration =
-      command->add_option("--duration", options->duration, "duration of the line, seconds")->check(positive());
+      command->add_option("--duration", options->duration, "duration of the line without its ramps, seconds")
+          ->check(positive());
   auto* speed = command->add_option("--speed", options->speed, "speed along the line, pulses/s (default 1000)")
                     ->check(positive());
   velocity->excludes(duration)->excludes(speed);

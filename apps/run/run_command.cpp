@@ -467,7 +467,7 @@ void add_run_command(CLI::App& app) {
   command->add_flag("--check", options->check, "read, check, plan and time the program; nothing runs");
   command->add_flag("--stream", options->stream,
                     "read the program while it runs, without checking the whole of it first. At an error the machine "
-                    "stops amid the program, and the exit status is 1");
+                    "stops in the middle of the program, and the exit status is 1");
   command
       ->add_option("--pipe-limit", options->pipe_limit,
                    fmt::format("maximum size of a program from standard input, a pipe or a device, in MiB. Such a "
