@@ -70,7 +70,7 @@ int run_command_line(int argc, char** argv, const char* version) {
   CLI::App app("Trammel: an open stepper-motion card, its golden model and its driver", "trammel");
   app.set_version_flag("--version", version);
   app.require_subcommand(1);
-  app.footer("trammel help COMMAND tells the options of a command.");
+  app.footer("trammel help COMMAND lists the options of a command.");
   add_run_command(app);
   add_line_command(app);
   add_jog_command(app);

@@ -25,15 +25,17 @@ struct CalibrateArguments {
 };
 
 constexpr const char* kPlaceIsVoid =
-    "with the new scale the place that a card keeps is void, for all axes: `trammel zero` with all of them where they "
-    "stand, then home again";
+    "the new scale makes the position that a card keeps invalid, for all axes. Run `trammel zero` with all axes where "
+    "they stand, then home again";
 
 // The file to change. A pipe has been read and cannot be changed.
 std::string file_to_write(const std::optional<std::string>& source) {
-  if (!source) throw UsageError("calibrate: --write needs a machine file (--machine FILE): the built-in one is none");
+  if (!source)
+    throw UsageError(
+        "calibrate: --write: the built-in machine is not a file. Name your machine file with --machine FILE");
   std::error_code error;
   if (!std::filesystem::is_regular_file(*source, error))
-    throw UsageError(fmt::format("calibrate: --write: {} is no regular file", *source));
+    throw UsageError(fmt::format("calibrate: --write: {} is not a regular file", *source));
   return *source;
 }
 
@@ -46,8 +48,9 @@ void calibrate_file(const CalibrateArguments& arguments) {
   if (!calibration.changed) return to_standard_output(calibration.said);
   if (file == nullptr) {
     to_standard_output(calibration.said);
-    tell("note", source ? "nothing is written: --write puts it into the machine file"
-                        : "nothing is written: the built-in machine is no file (examples/machine.toml is a copy)");
+    tell("note", source ? "nothing was written. Give --write to change the machine file"
+                        : "nothing was written: the built-in machine is not a file. Copy examples/machine.toml and "
+                          "name the copy with --machine");
   } else {
     outputs.open();
     file->write(calibration.text);
@@ -61,18 +64,22 @@ void calibrate_file(const CalibrateArguments& arguments) {
 
 void add_calibrate_command(CLI::App& app) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = app.add_subcommand("calibrate", "steps_per_mm of an axis from a measured distance");
+  CLI::App* command =
+      app.add_subcommand("calibrate", "calculate steps_per_mm of an axis from a commanded and a measured distance");
   command->add_option("axis", arguments->measured.axis, "letter of the axis")->required()->type_name("AXIS");
-  command->add_option("commanded", arguments->measured.commanded, "mm (degrees) that it was told to move")
+  command
+      ->add_option("commanded", arguments->measured.commanded,
+                   "distance that the axis was commanded to move, mm (degrees)")
       ->required()
       ->type_name("COMMANDED");
-  command->add_option("measured", arguments->measured.actual, "mm (degrees) that it moved")
+  command->add_option("measured", arguments->measured.actual, "distance that the axis moved, as measured, mm (degrees)")
       ->required()
       ->type_name("MEASURED");
   arguments->machine.add_file_to(*command);
-  command->add_flag("--write", arguments->write, "change the number in the machine file, and nothing else there");
+  command->add_flag("--write", arguments->write,
+                    "write the new number to the machine file, and change nothing else there (default: only show it)");
   command->add_flag("--force", arguments->measured.force,
-                    "take it, too, where the axis moved less than half or more than twice as far as commanded");
+                    "accept a measured distance of less than half or more than twice the commanded one");
   command->callback([arguments] { calibrate_file(*arguments); });
 }
 

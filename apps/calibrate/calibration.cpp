@@ -35,14 +35,13 @@ void check_distances(const Measured& measured, char letter) {
     throw UsageError("calibrate: COMMANDED and MEASURED must be distances other than 0");
   if (ratio < 0) {
     throw UsageError(
-        fmt::format("calibrate: {} moved the other way: that is no scale, change `inverted` in [axis.{}] and measure "
-                    "again",
+        fmt::format("calibrate: {} moved in the opposite direction. Change `inverted` in [axis.{}], then measure again",
                     letter, static_cast<char>(std::tolower(static_cast<unsigned char>(letter)))));
   }
   if (measured.force || (ratio >= kLeastRatio && ratio <= kMostRatio)) return;
   throw UsageError(
-      fmt::format("calibrate: {} moved {:.4g} times as far as commanded, outside {} to {}: first look at the drive's "
-                  "microstep switches and at units, then give --force",
+      fmt::format("calibrate: {} moved {:.4g} times as far as commanded, outside {} to {}. Check the drive's microstep "
+                  "switches and the units; if the distances are right, give --force",
                   letter, ratio, kLeastRatio, kMostRatio));
 }
 
@@ -57,7 +56,7 @@ std::string doubt_about(const MachineAxis& axis) {
   const bool limits = std::isfinite(axis.min) || std::isfinite(axis.max);
   if (!limits && !axis.homing) return {};
   return fmt::format(
-      "{}{}{} of axis {} stay as they are: measure anew those that were read off the machine in the old scale",
+      "{}{}{} of axis {} were not changed. Measure again those that you read off the machine in the old scale",
       limits ? "min and max" : "", limits && axis.homing ? " and " : "", axis.homing ? "[homing] distances" : "",
       axis.letter);
 }

@@ -106,7 +106,7 @@ std::string drives_text(Card& card, const driver::Status& now) {
   const bool any = card.parts().registers.read(reg::kEnableAxes) != 0;
   return fmt::format("drives   {}{}{}", now.enabled ? "enabled" : "disabled",
                      now.enable_waits ? ", motion waits for them" : "",
-                     any ? "" : " (of no axis: motion waits for none)");
+                     any ? "" : " (of no axis; motion does not wait for drives)");
 }
 
 // A line for each input that has a role.
@@ -118,7 +118,7 @@ void add_inputs(Card& card, const std::vector<run::AssignedInput>& assigned, std
     const bool active = (levels >> input.input & 1) != 0;
     const bool settled = active == ((raw >> input.input & 1) != 0);
     lines.push_back(fmt::format("{:<8} {}{}", active ? "ACTIVE" : "at rest", input.text(),
-                                settled ? "" : ", in its filter the other way"));
+                                settled ? "" : ", changing (its filter time is not over)"));
   }
 }
 
@@ -215,7 +215,7 @@ void try_settings(Card& card, Checks& checks) {
       if (!one.empty()) wrong = fmt::format("{}[{}]: {}", entry.name, i, one);
     }
   }
-  checks.add("settings keep what is written", wrong, fmt::format("{} registers, 4 patterns each", tried));
+  checks.add("registers keep what is written", wrong, fmt::format("{} registers, 4 patterns each", tried));
 }
 
 // The card must refuse it, for that reason.
@@ -235,7 +235,7 @@ void try_refusals(Card& card, Checks& checks) {
              expect_refusal(card, driver::write_of(reg::kAxes, 1), map::Reason::ReadOnly));
   checks.add("bits without meaning in HOLD are refused",
              expect_refusal(card, driver::write_of(reg::kHold, 2), map::Reason::BadValue));
-  checks.add("a write where nothing is is refused",
+  checks.add("a write to an unused address is refused",
              expect_refusal(card, driver::write_of(0x3FC, 0), map::Reason::UnknownAddress));
 }
 
@@ -246,8 +246,8 @@ void try_clock(Card& card, Checks& checks) {
   card.bus().sleep(std::chrono::milliseconds(200));
   const std::uint64_t clocks = card.read_snapshot().time - first;
   const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
-  checks.add("its clock runs", clocks == 0 ? "no clock in 0.2 s" : "",
-             fmt::format("{:.3f} s of the card in {:.3f} s here",
+  checks.add("the card's clock runs", clocks == 0 ? "it did not advance in 0.2 s" : "",
+             fmt::format("{:.3f} s of card time in {:.3f} s of this computer",
                          static_cast<double>(clocks) / card.identification().clock_hz, seconds));
 }
 
@@ -264,14 +264,15 @@ void try_link(Card& card, transport::Connection* connection, unsigned exchanges,
     const driver::FrameBus::Counts& counts = connection->frames()->counts();
     good += fmt::format(", {} requests sent again", counts.sent_again);
   }
-  checks.add("the link carries", wrong, good);
+  checks.add("the link works", wrong, good);
 }
 
 // Each switch in turn, by hand.
 void try_inputs(Card& card, const LookOptions& options, Checks& checks) {
   const std::vector<run::AssignedInput> inputs = run::assigned_inputs(card);
   if (inputs.empty()) {
-    checks.add("inputs have roles", "none has: a program that runs with a machine file that has [inputs] sets them");
+    checks.add("inputs have roles",
+               "no input has a role. Run a program with a machine file that has [inputs]; that sets the roles");
   }
   const std::chrono::nanoseconds longest(static_cast<std::int64_t>(options.switch_time * 1e9));
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -281,20 +282,21 @@ void try_inputs(Card& card, const LookOptions& options, Checks& checks) {
                                      options.switch_time));
       finish_standard_streams();
     });
-    constexpr const char* kWrong[] = {"", "it is active before it is pressed: see normally and closed_level",
-                                      "it was not pressed", "it was not released"};
+    constexpr const char* kWrong[] = {
+        "", "it is active before it is pressed. Check `normally` and `closed_level` in the machine file",
+        "it was not pressed", "it was not released"};
     checks.add(inputs[i].text(), kWrong[static_cast<unsigned>(result)], "active when pressed, then at rest");
   }
 }
 
 void selftest(Card& card, transport::Connection* connection, const LookOptions& options) {
   const driver::Status status = card.read_status();
-  if (status.busy) throw UsageError("selftest: the card is busy: it is tried when it is idle");
+  if (status.busy) throw UsageError("selftest: the card is busy. Test it when it is idle");
   Checks checks;
   const driver::Identification& id = card.identification();
-  checks.add("it says who it is", "",
+  checks.add("the card identifies itself", "",
              fmt::format("{} axes, {} Hz, map {}.{}", id.axes, id.clock_hz, id.map_major, id.map_minor));
-  checks.add("it has no fault", status.faulted ? card.read_fault_text() : "");
+  checks.add("the card has no fault", status.faulted ? card.read_fault_text() : "");
   const driver::Snapshot before = card.read_snapshot();
   try_link(card, connection, options.exchanges, checks);
   try_clock(card, checks);
@@ -318,19 +320,20 @@ void order_drives(Card& card, const machine::Machine& machine, const std::string
   if (!before.busy) run::configure_outputs(card, machine);
   if (card.parts().registers.read(reg::kEnableAxes) == 0) {
     throw UsageError(
-        "drives: the card enables drives of no axis: name an output `enable` in [outputs] of the machine file "
+        "drives: the card switches the drive of no axis. Name an output `enable` in [outputs] of the machine file "
         "(--machine)");
   }
   if (order == "on" && card.read_faults() != 0) {
     throw UsageError("drives: " + card.read_fault_text() + ": `trammel recover` says what to do first");
   }
-  if (order == "off" && before.busy) throw UsageError("drives: the card moves, or holds in a motion");
+  if (order == "off" && before.busy)
+    throw UsageError("drives: the card is moving, or holds in a motion. Give `off` when it is at rest");
   card.enable(order == "on");
 }
 
 void drives(const LookOptions& options) {
   const auto url = options.card.url();
-  if (!url) throw UsageError("drives: needs --card: a simulated card of this process has no drives yet");
+  if (!url) throw UsageError("drives: needs --card, because a card that this command simulates has no drives");
   const machine::Machine machine = options.machine.load();
   const Purpose purpose = options.order.empty() ? Purpose::kRead : Purpose::kMove;
   with_card(*url, purpose, [&](Card& card, transport::Connection&) {
@@ -347,10 +350,14 @@ void drives(const LookOptions& options) {
 }
 
 void add_drives_command(CLI::App& app, const std::shared_ptr<LookOptions>& options) {
-  CLI::App* command = app.add_subcommand("drives", "enable the drives by order, end that order, or show them");
+  CLI::App* command = app.add_subcommand(
+      "drives", "show whether the drives of an external card are enabled, enable them (on), or end that order (off)");
   options->machine.add_to(*command);
   options->card.add_to(*command);
-  command->add_option("order", options->order, "on or off; without it the state is shown")
+  command
+      ->add_option("order", options->order,
+                   "on: enable the drives until `trammel drives off`, also while nothing moves. off: end that order "
+                   "(default: show the state)")
       ->check(CLI::IsMember({"on", "off"}))
       ->type_name("ORDER");
   command->callback([options] { drives(*options); });
@@ -361,17 +368,18 @@ void add_drives_command(CLI::App& app, const std::shared_ptr<LookOptions>& optio
 void add_card_commands(CLI::App& app) {
   auto options = std::make_shared<LookOptions>();
   add_drives_command(app, options);
-  CLI::App* dump_command = app.add_subcommand("dump", "all registers of a card by name");
+  CLI::App* dump_command = app.add_subcommand("dump", "print all registers of a card by name");
   options->card.add_to(*dump_command);
   dump_command->callback(
       [options] { look_at(options->card, Purpose::kRead, [](Card& card, transport::Connection*) { dump(card); }); });
-  CLI::App* monitor_command = app.add_subcommand("monitor", "what a card does, as a live table");
+  CLI::App* monitor_command =
+      app.add_subcommand("monitor", "show a card's state, queues, positions and inputs in a table that is updated");
   options->card.add_to(*monitor_command);
-  monitor_command->add_option("--interval", options->interval, "between two looks, in card time")
+  monitor_command->add_option("--interval", options->interval, "time between two updates, seconds of card time")
       ->check(CLI::Range(0.001, 3600.0).description(""))
       ->type_name("SECONDS")
       ->capture_default_str();
-  monitor_command->add_option("--looks", options->looks, "end after so many (0: never)")
+  monitor_command->add_option("--looks", options->looks, "end after this number of updates. 0 is no limit")
       ->transform(whole_number(0, 1'000'000'000))
       ->type_name("N")
       ->capture_default_str();
@@ -379,11 +387,14 @@ void add_card_commands(CLI::App& app) {
     if (!options->card.url()) tell("note", "this is a fresh simulated card, at rest; --card shows another one");
     look_at(options->card, Purpose::kRead, [&](Card& card, transport::Connection*) { monitor(card, *options); });
   });
-  CLI::App* test_command = app.add_subcommand("selftest", "try a card's link, registers and clock; nothing moves");
+  CLI::App* test_command = app.add_subcommand("selftest", "test a card's link, registers and clock; nothing moves");
   options->card.add_to(*test_command);
-  test_command->add_flag("--inputs", options->inputs, "wait for each input that has a role to be pressed and released");
+  test_command->add_flag(
+      "--inputs", options->inputs,
+      "also test the inputs that have a role: for each, wait until you have pressed and released it");
   test_command
-      ->add_option("--switch-time", options->switch_time, "with --inputs: the longest wait for each, in card time")
+      ->add_option("--switch-time", options->switch_time,
+                   "with --inputs: longest wait for a press or a release, seconds of card time")
       ->check(CLI::Range(0.001, 3600.0).description(""))
       ->type_name("SECONDS")
       ->capture_default_str();

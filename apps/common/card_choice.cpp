@@ -56,7 +56,7 @@ void clear_with_note(driver::Card& card) {
   if ((card.read_faults() & card_map::field::kFaultEmergencyStop) != 0) {
     throw UsageError("--card: the emergency stop is pressed: release its button first");
   }
-  tell("note", "cleared the card's fault of before: " + faults);
+  tell("note", "cleared the card's earlier fault: " + faults);
 }
 
 }  // namespace
@@ -64,34 +64,43 @@ void clear_with_note(driver::Card& card) {
 void CardChoice::add_to(CLI::App& command) {
   command
       .add_option("--card", text,
-                  "a card outside: tcp://HOST:PORT (of `trammel serve`), serial:/dev/ttyUSB0, spi:/dev/spidev0.0, "
-                  "mmap:/dev/uio0 (default: sim:, simulated here)")
+                  "use an external card: tcp://HOST:PORT (of `trammel serve`), serial:/dev/ttyUSB0, spi:/dev/spidev0.0 "
+                  "or mmap:/dev/uio0 (default: sim:, a card that this command simulates)")
       ->type_name("URL");
 }
 
 void CardChoice::add_to_mover(CLI::App& command) {
   add_to(command);
-  command.add_flag("--clear-faults", clear_faults, "with --card: clear the faults that the card has from before");
-  command.add_flag("--trust-position", trust_position,
-                   "with --card: begin though the card's place was lost, since no step was");
+  command.add_flag("--clear-faults", clear_faults,
+                   "with --card: clear the card's faults first, and begin where the machine stands. Needed after a "
+                   "fault has stopped the card");
+  command.add_flag(
+      "--trust-position", trust_position,
+      "with --card: begin although the card marks its position as lost. Use it only if you know that no step was lost");
   command
       .add_option("--resume-file", resume_file,
-                  "with --card: where a run keeps what --resume needs (default: a file named after the card in the "
-                  "folder trammel of the user's state folder)")
+                  "with --card: file in which a run keeps what --resume needs (default: a file named after the card, "
+                  "in trammel/ of the user's state folder)")
       ->type_name("FILE");
 }
 
 std::optional<transport::CardUrl> CardChoice::url() const {
   if (!text || *text == "sim:") {
-    if (clear_faults) throw UsageError("--clear-faults: a simulated card has none from before; give it with --card");
-    if (trust_position) throw UsageError("--trust-position: a simulated card has lost no place; give it with --card");
-    if (resume_file) throw UsageError("--resume-file: a simulated card ends with its run; give it with --card");
+    if (clear_faults)
+      throw UsageError(
+          "--clear-faults: needs --card, because a card that this command simulates has no earlier faults");
+    if (trust_position)
+      throw UsageError(
+          "--trust-position: needs --card, because a card that this command simulates has lost no position");
+    if (resume_file)
+      throw UsageError(
+          "--resume-file: needs --card, because a run on a card that this command simulates cannot be resumed");
     return std::nullopt;
   }
   try {
     const transport::CardUrl url = transport::parse_card_url(*text);
     if (url.kind == transport::CardUrl::Kind::kSim) {
-      throw UsageError("--card sim: takes no options here: --axes, --clock and --engine do");
+      throw UsageError("--card sim: takes no options here. Give --axes, --clock or --engine instead");
     }
     return url;
   } catch (const driver::ArgumentError& error) {
@@ -116,14 +125,15 @@ void with_card(const transport::CardUrl& place, Purpose purpose,
     // A card says why; a server that was not asked for motion with a hello cannot.
     const bool silent = url.kind == transport::CardUrl::Kind::kSerial || !url.hello;
     if (error.reason() != 0 || !silent || !url.token.empty()) throw;
-    throw UsageError(fmt::format("--card {}: it refuses what moves it: {}", url.text, kTokenHint));
+    throw UsageError(fmt::format("--card {}: the card refuses commands that move it: {}", url.text, kTokenHint));
   }
 }
 
 void require_axes(const driver::Card& card, const machine::Machine& machine) {
   const unsigned axes = card.identification().axes;
   if (machine.motors() <= axes) return;
-  throw UsageError(fmt::format("--card: it has {} axes, the machine {} motors", axes, machine.motors()));
+  throw UsageError(
+      fmt::format("--card: the card has {} axes, but the machine file has {} motors", axes, machine.motors()));
 }
 
 void take_over(driver::Card& card, const CardChoice& choice, const machine::Machine& machine, bool resumes) {
@@ -133,7 +143,7 @@ void take_over(driver::Card& card, const CardChoice& choice, const machine::Mach
     const bool silent_host = status.faulted && (card.read_faults() & ~kSilent) == 0;
     if (!choice.clear_faults && !(resumes && silent_host)) card.parts().registers.throw_if_faulted(status, "--card");
     if (card.take_over()) {
-      tell("note", "the card held with a motion of before under way; what was left is dropped");
+      tell("note", "the card was holding in an earlier motion; the rest of that motion is dropped");
     }
     keep_place_of_stop(card, choice.resume());
     if (status.faulted) clear_with_note(card);
@@ -161,7 +171,9 @@ void tell_of_fault(driver::Card& card, const machine::Machine& machine) noexcept
 }
 
 void refuse_with_card(const CardChoice& card, const char* option, bool given) {
-  if (given) throw UsageError(fmt::format("{}: of the simulated card alone, not with --card {}", option, *card.text));
+  if (given)
+    throw UsageError(
+        fmt::format("{}: works only on a card that this command simulates, not with --card {}", option, *card.text));
 }
 
 }  // namespace trammel::app

@@ -27,7 +27,8 @@ std::vector<std::int64_t> numbers(const char* option, std::string_view text, std
   while (true) {
     std::int64_t value = 0;
     const auto [next, error] = std::from_chars(at, end, value);
-    if (error == std::errc::result_out_of_range) throw UsageError(fmt::format("{} {}: beyond 64 bits", option, text));
+    if (error == std::errc::result_out_of_range)
+      throw UsageError(fmt::format("{} {}: a number does not fit in 64 bits", option, text));
     if (error != std::errc{}) throw UsageError(fmt::format("{} {}: not whole numbers of pulses", option, text));
     result.push_back(value);
     at = next;
@@ -36,7 +37,7 @@ std::vector<std::int64_t> numbers(const char* option, std::string_view text, std
     ++at;
   }
   if (result.size() != count) {
-    throw UsageError(fmt::format("{} {}: {} numbers, {} are needed", option, text, result.size(), count));
+    throw UsageError(fmt::format("{} {}: {} numbers given, {} needed", option, text, result.size(), count));
   }
   return result;
 }
@@ -52,26 +53,33 @@ Curve named(const CurveChoice& choice) {
     return Arc{{v[2], v[3]}, {v[0], v[1]}, {v[4], v[5]}, choice.clockwise, 0, 0};
   }
   const auto v = numbers("--ellipse", *choice.ellipse, 2);
-  if (v[0] < 1 || v[1] < 1) throw UsageError(fmt::format("--ellipse {}: a semi-axis below 1 pulse", *choice.ellipse));
+  if (v[0] < 1 || v[1] < 1)
+    throw UsageError(fmt::format("--ellipse {}: each semi-axis must be 1 pulse or more", *choice.ellipse));
   return interpolation::make_ellipse(v[0], v[1], choice.clockwise);
 }
 
 }  // namespace
 
 void CurveChoice::add_to(CLI::App& command) {
-  command.add_option("--line", line, "a line between two points, pulses")->type_name("X0,Y0,X1,Y1");
-  command.add_option("--circle", circle, "a full circle about (0,0) from (R,0)")->type_name("R");
-  command.add_option("--arc", arc, "an arc of a circle from start about centre to end; end == start: a full turn")
+  command.add_option("--line", line, "line from X0,Y0 to X1,Y1, pulses")->type_name("X0,Y0,X1,Y1");
+  command.add_option("--circle", circle, "full circle about (0,0), begun at (R,0), pulses")->type_name("R");
+  command
+      .add_option(
+          "--arc", arc,
+          "arc from X0,Y0 about the centre CX,CY to X1,Y1, pulses. If end and start are equal, it is a full circle")
       ->type_name("X0,Y0,CX,CY,X1,Y1");
-  command.add_option("--ellipse", ellipse, "a full ellipse about (0,0) from (A,0), semi-axis A along x")
+  command
+      .add_option("--ellipse", ellipse,
+                  "full ellipse about (0,0), begun at (A,0), with semi-axis A along x and B along y, pulses")
       ->type_name("A,B");
-  command.add_flag("--clockwise", clockwise, "turn clockwise, x to the right and y up (default: counter-clockwise)");
+  command.add_flag("--clockwise", clockwise,
+                   "run along the curve clockwise, with x to the right and y up (default: counter-clockwise)");
 }
 
 Curve CurveChoice::curve() const {
   const int count = line.has_value() + circle.has_value() + arc.has_value() + ellipse.has_value();
   if (count != 1) throw UsageError("give one of --line, --circle, --arc and --ellipse");
-  if (circle && numbers("--circle", *circle, 1)[0] < 0) throw UsageError("--circle: a negative radius");
+  if (circle && numbers("--circle", *circle, 1)[0] < 0) throw UsageError("--circle: the radius must not be negative");
   const Curve result = named(*this);
   try {
     interpolation::check_curve(result);
@@ -84,10 +92,10 @@ Curve CurveChoice::curve() const {
 void VelocityChoice::add_to(CLI::App& command) {
   // As make_interpolator() takes them.
   constexpr std::uint64_t kMax = std::uint64_t{1} << 30;
-  command.add_option("--clock", clock_hz, "clock of one-shot and divider methods (default 10000000)")
+  command.add_option("--clock", clock_hz, "clock of the one-shot and divider methods (default 10000000)")
       ->transform(whole_number(1, kMax, "Hz"))
       ->type_name("HZ");
-  command.add_option("--velocity", velocity, "lines a second, the second paper's v (default 5000)")
+  command.add_option("--velocity", velocity, "lines per second, v of the second paper (default 5000)")
       ->transform(whole_number(1, kMax, "lines/s"));
 }
 

@@ -103,18 +103,19 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::
 void EngineChoice::add_to(CLI::App& command, const std::string& default_clock) {
   command
       .add_option("--engine", engine,
-                  "rtl: the Verilated card in lockstep with the golden model; model: the model alone")
+                  "how to simulate the card. rtl: the Verilated RTL, compared with the golden model in every cycle. "
+                  "model: the golden model alone, which is faster")
       ->check(CLI::IsMember({"rtl", "model"}))
       ->capture_default_str();
   command.add_option("--clock", clock_hz, fmt::format("clock of the simulated card (default: {})", default_clock))
       ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ");
-  command.add_option("--trace", trace, "waveform of the card as FST file (engine rtl only)")
+  command.add_option("--trace", trace, "write the waveforms of the card to an FST file (only with --engine rtl)")
       ->check(waveform_file())
       ->type_name("FILE");
   command
       .add_option("--trace-window", trace_window,
-                  "trace only this stretch, seconds of card time; either may be left out")
+                  "with --trace: record this interval only, seconds of card time. Either end may be left out")
       ->type_name("FROM:TO");
 }
 

@@ -16,13 +16,13 @@ simulation::OperatorEvent input_event(const std::string& text) {
   const auto [at, pin_and_level] = halves(kOption, text, kForm);
   const auto [pin, level] = halves(kOption, pin_and_level, kForm);
   const double seconds = seconds_of(kOption, at, "time");
-  if (level != "0" && level != "1") throw UsageError(fmt::format("{}: {} is no level, 0 or 1", kOption, level));
+  if (level != "0" && level != "1") throw UsageError(fmt::format("{}: {} is not a level (0 or 1)", kOption, level));
   using Kind = simulation::OperatorEvent::Kind;
   if (pin == "estop") return {Kind::kEmergencyStop, seconds, 0, 0, level == "1"};
   const auto input = number(pin);
   if (!input || !(*input >= 0) || *input >= sim::kInputs || *input != std::floor(*input)) {
-    throw UsageError(
-        fmt::format("{}: {} is no input of the simulated card, 0 to {} or estop", kOption, pin, sim::kInputs - 1));
+    throw UsageError(fmt::format("{}: {} is not an input of the simulated card (0 to {}, or estop)", kOption, pin,
+                                 sim::kInputs - 1));
   }
   return {Kind::kInput, seconds, 0, static_cast<unsigned>(*input), level == "1"};
 }

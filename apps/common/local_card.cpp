@@ -31,15 +31,15 @@ sim::SimulationOptions local_engine(const LocalCardChoice& choice, unsigned axes
 void LocalCardChoice::add_to(CLI::App& command) {
   command
       .add_option("--engine", engine,
-                  "of the simulated card: rtl: the Verilated card in lockstep with the golden model; model: the model "
-                  "alone")
+                  "how to simulate the card. rtl: the Verilated RTL, compared with the golden model in every cycle. "
+                  "model: the golden model alone, which is faster")
       ->check(CLI::IsMember({"rtl", "model"}))
       ->capture_default_str();
   command.add_option("--clock", clock_hz, "clock of the simulated card")
       ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ")
       ->capture_default_str();
-  command.add_flag("--fast", fast, "the simulated card runs as fast as it can, not in real time");
+  command.add_flag("--fast", fast, "run the simulated card as fast as possible, not in real time");
   world.add_to(command);
 }
 

@@ -39,14 +39,16 @@ std::optional<std::string> user_machine_file() {
 void MachineChoice::add_file_to(CLI::App& command) {
   command
       .add_option("--machine", file,
-                  "machine file; 'built-in': X Y Z E at 80 steps/mm (default: trammel/machine.toml in the user's "
-                  "configuration folder, where it is there, else built-in)")
+                  "machine file. 'built-in' is a machine with X Y Z E at 80 steps/mm (default: trammel/machine.toml in "
+                  "the user's configuration folder if it exists, else built-in)")
       ->type_name("TOML");
 }
 
 void MachineChoice::add_to(CLI::App& command) {
   add_file_to(command);
-  command.add_option("--set", overrides, "override an entry of the machine file (repeatable)")
+  command
+      .add_option("--set", overrides,
+                  "override an entry of the machine file, such as axis.x.steps_per_mm=200 (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }

@@ -23,7 +23,8 @@ std::optional<double> number(std::string_view text) {
 double seconds_of(const std::string& option, std::string_view text, const char* what) {
   const auto value = number(text);
   if (!value || !(*value >= 0) || *value > kLongest) {
-    throw UsageError(fmt::format("{}: {} is no {} from 0 to {:g} seconds of card time", option, text, what, kLongest));
+    throw UsageError(
+        fmt::format("{}: {} is not a {} from 0 to {:g} seconds of card time", option, text, what, kLongest));
   }
   return *value;
 }

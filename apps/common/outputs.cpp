@@ -73,7 +73,7 @@ std::string identity_of_new_file(const fs::path& file) {
 // Looks at the destination, and creates and opens nothing.
 Output::Output(std::string option, std::string name, bool by_name)
     : option_(std::move(option)), name_(std::move(name)), by_name_(by_name) {
-  if (name_.empty()) throw UsageError(fmt::format("{}: a file without a name", option_));
+  if (name_.empty()) throw UsageError(fmt::format("{}: the name of the file is empty", option_));
   const auto refuse = [&](const std::string& why) { throw UsageError(fmt::format("{}: {}", name_, why)); };
   struct stat status {};
   if (name_ != "-") target_ = follow_links(name_);
@@ -208,7 +208,7 @@ void Outputs::check() const {
     for (const Kept& kept : kept_) {
       if (!kept.identity.empty() && kept.identity == output.identity_) {
         throw UsageError(
-            fmt::format("{} {}: is {}, which is not overwritten", output.option_, output.name_, kept.what));
+            fmt::format("{} {}: this is {}, which must not be overwritten", output.option_, output.name_, kept.what));
       }
     }
     for (std::size_t j = 0; j < i; ++j) {

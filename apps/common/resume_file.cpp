@@ -26,7 +26,8 @@ using State = ResumeRecord::State;
 constexpr const char* kKind = "trammel resume";
 constexpr int kFormat = 1;
 constexpr const char* kStates[] = {"running", "stopped", "done"};
-constexpr const char* kZeroSet = "machine zero was set anew since the interrupted run: its place is not known any more";
+constexpr const char* kZeroSet =
+    "machine zero was set anew since the interrupted run, so the position where it stopped is not known any more";
 
 // The XDG Base Directory Specification: a relative path there is ignored.
 fs::path state_folder() {
@@ -121,7 +122,7 @@ std::string differing_option(const ResumeKey& before, const ResumeKey& now) {
 driver::Rest rest_without_stop(driver::Card& card, const ResumeRecord& record) {
   const driver::Snapshot now = card.read_snapshot();
   if (now.time <= record.time) throw UsageError("the card was reset since the interrupted run");
-  if (now.status.busy) throw UsageError("the card moves");
+  if (now.status.busy) throw UsageError("the card is moving");
   driver::Rest rest;
   rest.time = now.time;
   rest.status = now.status;
@@ -149,10 +150,11 @@ std::optional<ResumeRecord> ResumeFile::read() const {
   std::ifstream in(path_);
   const Json json = Json::parse(in, nullptr, false);
   if (json.is_discarded() || !json.is_object() || json.value("kind", "") != kKind) {
-    throw UsageError(fmt::format("{}: is no file of an interrupted run", path_));
+    throw UsageError(fmt::format("{}: is not the file of an interrupted run", path_));
   }
   if (json.value("format", 0) != kFormat) {
-    throw UsageError(fmt::format("{}: of another version of trammel (format {})", path_, json.value("format", 0)));
+    throw UsageError(
+        fmt::format("{}: was written by another version of trammel (format {})", path_, json.value("format", 0)));
   }
   try {
     return record_of(json);
@@ -167,7 +169,7 @@ void ResumeFile::write(const ResumeRecord& record) const {
   try {
     there = read().has_value();  // another file with its name is left alone
   } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}; give another one by --resume-file", error.what()));
+    throw UsageError(fmt::format("{}; name another file with --resume-file", error.what()));
   }
   const fs::path target(path_);
   const fs::path folder = target.parent_path().empty() ? fs::path(".") : target.parent_path();
@@ -179,10 +181,10 @@ void ResumeFile::write(const ResumeRecord& record) const {
     std::ofstream out(beside);
     out << json_of(record).dump(2) << '\n';
     out.close();
-    if (!out) throw std::runtime_error("cannot be written");
+    if (!out) throw std::runtime_error("writing failed");
     fs::rename(beside, target);
   } catch (const std::exception& error) {
-    const std::string text = fmt::format("{}: the place of an interrupted run cannot be kept: {}", path_, error.what());
+    const std::string text = fmt::format("{}: cannot write the file that --resume needs: {}", path_, error.what());
     if (named_ || there) throw UsageError(text);
     tell("note", text);
   }
@@ -196,11 +198,11 @@ std::string TextHash::text() const { return fmt::format("{:016x}", hash_); }
 
 std::string difference(const ResumeKey& before, const ResumeKey& now) {
   if (before.program_hash != now.program_hash) {
-    return fmt::format("the program {} has other lines than {} had then", now.program, before.program);
+    return fmt::format("the lines of the program {} differ from those that {} had then", now.program, before.program);
   }
   if (before.machine_hash != now.machine_hash) return "the machine file or --set has changed since then";
   if (before.planner != now.planner) {
-    return fmt::format("the planner has version {}, and had version {} then", now.planner, before.planner);
+    return fmt::format("the planner has version {}, but had version {} then", now.planner, before.planner);
   }
   return differing_option(before, now);
 }
@@ -220,7 +222,8 @@ run::RunSettings::Place place_of_stop(driver::Card& card, const ResumeRecord& re
   std::copy_n(record.zero.begin(), std::min(record.zero.size(), zero.size()), zero.begin());
   const std::optional<run::RunSettings::Place> place = run::place_of(record.begin, rest, zero);
   if (!place) {
-    throw UsageError("the card was stopped at once while it moved: at which tick of the path it stands is not known");
+    throw UsageError(
+        "the card was stopped immediately while it moved, so the tick of the path at which it stands is not known");
   }
   return *place;
 }
@@ -234,7 +237,7 @@ bool keep_place_of_stop(driver::Card& card, const ResumeFile& file) noexcept {
     file.write(*record);
     return true;
   } catch (const UsageError& error) {
-    tell("note", fmt::format("the interrupted run cannot be gone on with: {}", error.what()));
+    tell("note", fmt::format("the interrupted run cannot be resumed: {}", error.what()));
     return false;
   } catch (const std::exception&) {
     return true;

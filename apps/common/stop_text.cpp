@@ -31,11 +31,11 @@ std::string jog_options(const machine::Machine& machine, const StoppedCard& card
 std::string jog_away(const machine::Machine& machine, const StoppedCard& card, std::size_t n, bool from_plus,
                      const char* further) {
   constexpr int kAway = 5;
-  const std::string jog =
-      n < machine.axes.size()
-          ? fmt::format(", as `trammel jog {}{}{}{}{}` ({} {})", machine.axes[n].letter, from_plus ? "-" : "", kAway,
-                        jog_options(machine, card), further, kAway, run::unit_of(machine.axes[n].letter))
-          : "";
+  const std::string jog = n < machine.axes.size() ? fmt::format(", for example with `trammel jog {}{}{}{}{}` ({} {})",
+                                                                machine.axes[n].letter, from_plus ? "-" : "", kAway,
+                                                                jog_options(machine, card), further, kAway,
+                                                                run::unit_of(machine.axes[n].letter))
+                                                  : "";
   return fmt::format("move it towards {}{}", from_plus ? "minus" : "plus", jog);
 }
 
@@ -50,8 +50,8 @@ std::string limit_cure(const machine::Machine& machine, const StoppedCard& card,
   const std::string axis = name_of(machine, n);
   if (plus && has(card.limits.minus, n)) {
     return fmt::format(
-        "{} is at a limit switch, and the card does not know at which end: both directions are barred; look where it "
-        "is, and move it away with `trammel jog`, --clear-faults and --override-limits",
+        "{} is at a limit switch, and the card does not know at which end, so both directions are barred. Look where "
+        "the axis is, and move it away with `trammel jog`, --clear-faults and --override-limits",
         axis);
   }
   const std::string at = fmt::format("{} has stepped into its limit at the {} end: ", axis, plus ? "plus" : "minus");
@@ -63,7 +63,8 @@ std::string limit_cure(const machine::Machine& machine, const StoppedCard& card,
 }
 
 std::string drive_cure(const machine::Machine& machine, std::size_t n) {
-  return fmt::format("the drive of {} reports a fault: end it at the drive, then --clear-faults", name_of(machine, n));
+  return fmt::format("the drive of {} reports a fault: clear it at the drive, then give --clear-faults",
+                     name_of(machine, n));
 }
 
 // After an abort in motion come the steps of the ticks taken and the pulses of the shapers: seven and five an axis.
@@ -100,7 +101,7 @@ std::string standing_text(const machine::Machine& machine, const StoppedCard& ca
 }
 
 std::string path_text(const driver::Rest& rest, std::uint32_t clock_hz) {
-  if (!rest.exact()) return "at a place of its path that is not known, since it was stopped at once in motion";
+  if (!rest.exact()) return "at an unknown place of its path, because it was stopped immediately while it moved";
   if (rest.status.direct && rest.ticks_left != 0) {
     return fmt::format("in a line of direct mode, {} clocks ({:.4f} s) before its end (exact)", rest.ticks_left,
                        static_cast<double>(rest.ticks_left) / clock_hz);
@@ -131,8 +132,9 @@ std::vector<std::string> fault_cures(const machine::Machine& machine, const Stop
 
 std::string stop_text(const machine::Machine& machine, const StoppedCard& card) {
   const driver::Status& status = card.place.now.status;
-  std::string text = fmt::format("the card {} {}", status.stopping || status.busy ? "is on its ramp, at" : "stands at",
-                                 standing_text(machine, card));
+  std::string text =
+      fmt::format("the card {} {}", status.stopping || status.busy ? "is still stopping on a ramp, at" : "stands at",
+                  standing_text(machine, card));
   if (card.rest) text += ", " + path_text(*card.rest, card.clock_hz);
   for (const std::string& cure : fault_cures(machine, card)) text += "; " + cure;
   return text;

@@ -32,7 +32,8 @@ void refuse_wired_inputs(const world::World& world, const std::vector<simulation
                        (event.kind == Kind::kEmergencyStop && world.has_emergency_stop());
     if (!wired) continue;
     const std::string pin = event.kind == Kind::kInput ? fmt::format("input {}", event.input) : "the emergency stop";
-    throw UsageError(fmt::format("--input-at: the world has wired {}: its events press it (--world-events)", pin));
+    throw UsageError(fmt::format(
+        "--input-at: {} is wired to a switch or button of the world. Press it with --world-events instead", pin));
   }
 }
 
@@ -41,14 +42,14 @@ void refuse_wired_inputs(const world::World& world, const std::vector<simulation
 void WorldChoice::add_to(CLI::App& command) {
   CLI::Option* const option =
       command
-          .add_option(
-              "--world", file,
-              "machine behind the simulated card's pins: carriages, switches, buttons; default is the built-in one")
+          .add_option("--world", file,
+                      "simulate a machine behind the simulated card's pins, with carriages, switches and buttons. FILE "
+                      "is a world file, or 'default' for the built-in one")
           ->type_name("FILE");
   command
-      .add_option(
-          "--world-events", events,
-          "what is pressed at its buttons, a line each: at 1.5 s press estop, at 2 s release estop, at 3 s alarm X")
+      .add_option("--world-events", events,
+                  "script that presses the world's buttons, one event per line, such as: at 1.5 s press estop; at 2 s "
+                  "release estop; at 3 s alarm X")
       ->type_name("FILE")
       ->needs(option);
 }

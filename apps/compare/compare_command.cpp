@@ -56,9 +56,10 @@ std::string title_of(const CurveChoice& choice) {
 
 void check_size(const interpolation::Curve& curve) {
   const std::uint64_t pulses = measure::pulses_along(curve);
-  if (pulses == 0) throw UsageError("a line without length: nothing to compare");
+  if (pulses == 0) throw UsageError("the line has no length, so there is nothing to compare");
   if (pulses > measure::kMaxPulses) {
-    throw UsageError(fmt::format("a curve of about {} pulses: at most {} are compared", pulses, measure::kMaxPulses));
+    throw UsageError(
+        fmt::format("the curve has about {} pulses; at most {} can be compared", pulses, measure::kMaxPulses));
   }
 }
 
@@ -108,7 +109,7 @@ void compare_curve(const CompareOptions& options) {
 }
 
 void compare_random(const CompareOptions& options) {
-  if (options.curve.given()) throw UsageError("--random takes no curve of its own");
+  if (options.curve.given()) throw UsageError("--random: give it without --line, --circle, --arc and --ellipse");
   if (options.plot) throw UsageError("--plot: a picture is made of one curve, not of --random lines");
   measure::RandomLines lines;
   lines.count = *options.random;
@@ -142,27 +143,35 @@ void compare_random(const CompareOptions& options) {
 
 void add_compare_command(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand(
-      "compare",
-      "all methods on one curve, or over random lines: distances, host cost, evenness, vibration of a motor");
+  CLI::App* command =
+      app.add_subcommand("compare",
+                         "compare all interpolation methods on one curve, or on random lines: distance from the curve, "
+                         "cost for the host, evenness of the steps, vibration of a motor");
   options->curve.add_to(*command);
   options->velocity.add_to(*command);
-  command->add_option("--random", options->random, "so many random lines instead of one curve")
+  command->add_option("--random", options->random, "compare on this number of random lines instead of one curve")
       ->transform(whole_number(1, kMaxLines, "lines"))
       ->type_name("N");
   // As far as every whole number is a double.
-  command->add_option("--seed", options->seed, "of the random lines (default 1)")
+  command->add_option("--seed", options->seed, "seed of the random lines (default 1)")
       ->transform(whole_number(0, std::uint64_t{1} << 53));
-  command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)")
+  command
+      ->add_option("--largest", options->largest,
+                   "maximum length of a random line along each axis, pulses (default 1000)")
       ->transform(whole_number(1, measure::kMaxPulses / 2, "pulses"));
-  command->add_option("--threads", options->threads, "threads (default: one a core)")->transform(whole_number(1, 256));
-  command->add_option("--drive", options->drive, "steps of the simulated motor: full or half (default full)")
+  command->add_option("--threads", options->threads, "number of threads (default: one per core)")
+      ->transform(whole_number(1, 256));
+  command
+      ->add_option("--drive", options->drive,
+                   "how the simulated motor is driven: with full or half steps (default full)")
       ->check(CLI::IsMember({"full", "half"}));
   command->add_flag("--no-ramps", options->no_ramps,
-                    "start and stop the simulated motors at full speed, not on ramps of 50 ms");
-  command->add_flag("--progress", options->progress, "show a progress bar even if stderr is no terminal");
-  command->add_option("--json", options->json, "everything measured as JSON ('-': standard output)")->type_name("FILE");
-  command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")
+                    "start and stop the simulated motors at full speed, without ramps of 50 ms");
+  command->add_flag("--progress", options->progress, "show the progress even if standard error is not a terminal");
+  command->add_option("--json", options->json, "write all measured values to a JSON file ('-': standard output)")
+      ->type_name("FILE");
+  command
+      ->add_option("--plot", options->plot, "write a picture of distances, step intervals and vibration to an SVG file")
       ->type_name("FILE.svg")
       ->check(svg_file());
   command->callback([options] { options->random ? compare_random(*options) : compare_curve(*options); });

@@ -117,7 +117,7 @@ std::string evenness_table(const Comparison& comparison) {
   }
   return "\nEvenness\n"
          "  x largest, x rms  deviation of the axis's step intervals in % of the even one\n"
-         "  x line, x at      highest line of their spectrum in %, and its frequency in cycles a pulse\n"
+         "  x line, x at      highest line of their spectrum in %, and its frequency in cycles per pulse\n"
          "  ripple rms, largest  speed along the path, deviation in % of the mean speed\n" +
          table.text();
 }
@@ -269,8 +269,8 @@ std::string table_of(const measure::RandomLines& lines, const std::vector<measur
                fmt::format("{},{}", method.worst_line.end[0], method.worst_line.end[1])});
   }
   return fmt::format(
-             "{} random lines from (0,0), up to {} pulses an axis, seed {}; {} Hz, {} lines/s\n"
-             "mean steps and host operations a line; distance in pulses: perpendicular (largest, mean), on one axis "
+             "{} random lines from (0,0), up to {} pulses per axis, seed {}; {} Hz, {} lines/s\n"
+             "mean steps and host operations per line; distance in pulses: perpendicular (largest, mean), on one axis "
              "from the point\nat constant speed; interval deviation and speed ripple in %\n",
              lines.count, lines.largest, lines.seed, lines.options.clock_hz, lines.options.velocity) +
          table.text();

@@ -147,21 +147,26 @@ void grbl_command(const GrblOptions& options) {
 
 void add_grbl_command(CLI::App& app) {
   auto options = std::make_shared<GrblOptions>();
-  CLI::App* command =
-      app.add_subcommand("grbl", "a Grbl 1.1 controller for senders (cncjs, bCNC, UGS), with a card behind it");
-  auto* listen =
-      command->add_option("--listen", options->listen, "address and port for senders; port 0: one that is free")
-          ->type_name("HOST:PORT")
-          ->capture_default_str();
-  auto* terminal =
-      command->add_flag("--pty", options->terminal, "a serial port (pseudo-terminal) in place of it")->excludes(listen);
-  command->add_flag("--stdio", options->standard, "standard input and output in place of it")
+  CLI::App* command = app.add_subcommand(
+      "grbl",
+      "act as a Grbl 1.1 controller for senders (cncjs, bCNC, UGS), with a simulated or an external card behind it");
+  auto* listen = command
+                     ->add_option("--listen", options->listen,
+                                  "address and TCP port on which senders connect. Port 0 is any free port")
+                     ->type_name("HOST:PORT")
+                     ->capture_default_str();
+  auto* terminal = command
+                       ->add_flag("--pty", options->terminal,
+                                  "use a pseudo-terminal instead of a TCP port. To senders it looks like a serial port")
+                       ->excludes(listen);
+  command->add_flag("--stdio", options->standard, "use standard input and output instead of a TCP port")
       ->excludes(listen)
       ->excludes(terminal);
-  command->add_flag("--once", options->once, "end when the last sender has gone and the machine stands");
+  command->add_flag("--once", options->once, "end when the last sender has disconnected and the machine is at rest");
   command
       ->add_option("--settings", options->settings,
-                   "where what senders set ($x=, $N, offsets) is kept (default: nowhere, it ends with the server)")
+                   "file in which the settings that senders make ($x=, $N, offsets) are kept (default: none; they are "
+                   "lost when the server ends)")
       ->type_name("FILE");
   options->local.add_to(*command);
   options->machine.add_to(*command);

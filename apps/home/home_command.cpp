@@ -108,7 +108,7 @@ void home_on(driver::Card& card, const HomeOptions& options) {
 
 void home(const HomeOptions& options) {
   const auto url = options.card.url();
-  if (!url) throw UsageError("home: needs --card: a simulated card of this process has no switches to find");
+  if (!url) throw UsageError("home: needs --card, because a card that this command simulates has no switches");
   with_card(*url, Purpose::kMove, [&](driver::Card& card, transport::Connection&) { home_on(card, options); });
 }
 
@@ -116,8 +116,9 @@ void home(const HomeOptions& options) {
 
 void add_home_command(CLI::App& app) {
   auto options = std::make_shared<HomeOptions>();
-  CLI::App* command = app.add_subcommand("home", "let axes find their switches, and with them machine zero");
-  command->add_option("axes", options->words, "letters of the axes; none: all that the machine file can home")
+  CLI::App* command =
+      app.add_subcommand("home", "home axes of an external card: move each to its switch, and set machine zero by it");
+  command->add_option("axes", options->words, "letters of the axes (default: all that the machine file can home)")
       ->type_name("AXIS");
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);

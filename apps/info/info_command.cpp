@@ -94,7 +94,7 @@ void info_in_simulation(const InfoArguments& options) {
   outputs.check();
   sim::SimulationOptions engine_options = options.engine.options(options.axes, kInfoClock, kInfoClock);
   if (trace != nullptr && simulation::traced_axes(options.axes) != options.axes) {
-    throw UsageError(fmt::format("--trace: cards of 4 and of 8 axes are built for it, not of {}", options.axes));
+    throw UsageError(fmt::format("--trace: works only on cards with 4 or 8 axes, not with {}", options.axes));
   }
   outputs.open();
   if (trace != nullptr) engine_options.trace->path = trace->path_to_write();
@@ -109,10 +109,10 @@ void info_in_simulation(const InfoArguments& options) {
 
 void add_info_command(CLI::App& app) {
   auto options = std::make_shared<InfoArguments>();
-  CLI::App* command = app.add_subcommand("info", "what the card says of itself");
+  CLI::App* command = app.add_subcommand("info", "show a card's identification, units and state");
   options->card.add_to(*command);
   options->engine.add_to(*command);
-  command->add_option("--axes", options->axes, "axes of the simulated card")
+  command->add_option("--axes", options->axes, "number of axes of the simulated card")
       ->transform(whole_number(1, card_map::kMaxAxes))
       ->capture_default_str();
   command->callback([options] { info_in_simulation(*options); });

@@ -60,7 +60,7 @@ void add_word(const std::string& word, const machine::Machine& machine, Distance
   const char* const end = word.data() + word.size();
   const auto [rest, error] = std::from_chars(word.data() + 1, end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value)) throw wrong("the distance must be a number");
-  if ((distances.named >> *axis & 1U) != 0) throw wrong("the axis stands twice");
+  if ((distances.named >> *axis & 1U) != 0) throw wrong("the axis is given twice");
   distances.named |= 1U << *axis;
   distances.by[*axis] = value;
 }
@@ -95,7 +95,7 @@ void move_by(run::Jog& jog, const run::MachinePosition& position, const machine:
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const double pulse = 1 / machine.axes[axis].steps_per_mm;
     if (std::abs(at[axis] - from[axis] - distance[axis]) <= pulse) continue;
-    tell("note", fmt::format("{} went by {:.4f} of {:.4f}: a soft limit (min or max) is in the way",
+    tell("note", fmt::format("{} moved by {:.4f} instead of {:.4f}, because a soft limit (min or max) is in the way",
                              machine.axes[axis].letter, at[axis] - from[axis], distance[axis]));
   }
 }
@@ -198,7 +198,7 @@ void jog_on(driver::Card& card, const JogArguments& options) {
 
 void jog(const JogArguments& options) {
   const auto url = options.card.url();
-  if (!url) throw UsageError("jog: name the card by --card: a simulated one of this command's own would end with it");
+  if (!url) throw UsageError("jog: needs --card, because a card that this command simulates ends with the command");
   if (options.override_limits && options.words.empty()) {
     throw UsageError("--override-limits: name axes and distances that lead away from the limit, such as X-5");
   }
@@ -212,20 +212,21 @@ void jog(const JogArguments& options) {
 
 void add_jog_command(CLI::App& app) {
   auto options = std::make_shared<JogArguments>();
-  CLI::App* command = app.add_subcommand("jog", "move axes of a card by hand: by a distance, or by keys");
+  CLI::App* command =
+      app.add_subcommand("jog", "move axes of an external card by a distance, or with keys of the terminal");
   command
       ->add_option("distances", options->words,
-                   "axes and how far each goes from here, mm or degrees, such as X10 Y-0.5; none: by the keys of the "
-                   "terminal")
+                   "axes, each with its distance from where it stands, mm or degrees, such as X10 Y-0.5 (default: "
+                   "none; keys of the terminal move the axes)")
       ->type_name("X10");
   command
       ->add_option("--speed", options->speed,
-                   "mm/s along the path, with keys of each axis (default: a quarter of the slowest axis's "
-                   "max_velocity; with keys of each axis's)")
+                   "speed along the path, or of each axis with keys, mm/s (default: a quarter of the slowest axis's "
+                   "max_velocity; with keys, a quarter of each axis's own)")
       ->check(positive());
   command->add_flag("--override-limits", options->override_limits,
-                    "limits that are active now stop nothing until they are released: to move away where the card "
-                    "bars both directions (CoreXY, one switch for both ends)");
+                    "ignore the limits that are active now until they are released. Needed to move away from a limit "
+                    "if the card bars both directions (CoreXY, one switch for both ends)");
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);
   command->callback([options] { jog(*options); });

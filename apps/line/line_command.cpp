@@ -381,8 +381,9 @@ void refuse_other_line(const LineArguments& options) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
   if (options.no_ramp) return;
-  refuse("--max-velocity", !options.max_velocity.empty(), "for a line with --no-ramp; else --set axis.x.max_velocity");
-  refuse("--slow", options.slow, "for a line with --no-ramp: one with ramps always keeps the machine's limits");
+  refuse("--max-velocity", !options.max_velocity.empty(),
+         "only with --no-ramp. With ramps, --set axis.x.max_velocity limits the speed");
+  refuse("--slow", options.slow, "only with --no-ramp. With ramps, a line always keeps the machine's limits");
 }
 
 void line_in_simulation(const LineArguments& options) {
@@ -411,34 +412,46 @@ void line_in_simulation(const LineArguments& options) {
 void add_line_command(CLI::App& app) {
   auto options = std::make_shared<LineArguments>();
   CLI::App* command = app.add_subcommand(
-      "line", "make one straight line, with the machine's ramps, or abruptly in one burst of register writes");
-  command->add_option("--from", options->from, "start, pulses, one value an axis (default: 0)")
+      "line", "move along one straight line, given in pulses, with the machine's ramps or without any (--no-ramp)");
+  command->add_option("--from", options->from, "start of the line, pulses, one value per axis (default: 0)")
       ->delimiter(',')
       ->check(pulses())
       ->type_name("X,Y,...");
-  command->add_option("--to", options->to, "end, pulses, one value an axis")
+  command->add_option("--to", options->to, "end of the line, pulses, one value per axis")
       ->delimiter(',')
       ->check(pulses())
       ->required()
       ->type_name("X,Y,...");
   auto* velocity =
-      command->add_option("--velocity", options->velocity, "lines a second, the second paper's v")->check(positive());
-  auto* duration = command->add_option("--duration", options->duration, "time of the line, seconds")->check(positive());
-  auto* speed =
-      command->add_option("--speed", options->speed, "pulses/s along the path (default 1000)")->check(positive());
+      command->add_option("--velocity", options->velocity, "speed in lines per second, v of the second paper")
+          ->check(positive());
+  auto* duration =
+      command->add_option("--duration", options->duration, "duration of the line without its ramps, seconds")
+          ->check(positive());
+  auto* speed = command->add_option("--speed", options->speed, "speed along the line, pulses/s (default 1000)")
+                    ->check(positive());
   velocity->excludes(duration)->excludes(speed);
   duration->excludes(speed);
-  command->add_option("--max-velocity", options->max_velocity, "with --no-ramp: limit of each axis, pulses/s (0: none)")
+  command
+      ->add_option("--max-velocity", options->max_velocity,
+                   "with --no-ramp: speed limit of each axis, pulses/s. 0 is no limit (default: 0)")
       ->delimiter(',')
       ->transform(whole_number(0, UINT32_MAX, "pulses/s"));
-  command->add_flag("--slow", options->slow, "with --no-ramp: slow down to keep a limit instead of refusing");
-  command->add_flag("--no-ramp", options->no_ramp, "the papers' line: full speed from the first pulse to the last");
+  command->add_flag("--slow", options->slow,
+                    "with --no-ramp: slow the line down to keep --max-velocity (default: refuse it)");
+  command->add_flag("--no-ramp", options->no_ramp,
+                    "move at full speed from the first pulse to the last, like the lines of the papers. One burst of "
+                    "register writes starts the line");
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);
   options->engine.add_to(*command);
-  command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
-  command->add_option("--plot", options->plot, "picture of path and speed")->type_name("FILE.svg")->check(svg_file());
-  command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
+  command->add_option("--json", options->json, "write the summary to a JSON file")->type_name("FILE");
+  command->add_option("--plot", options->plot, "write a picture of path and speed to an SVG file")
+      ->type_name("FILE.svg")
+      ->check(svg_file());
+  command
+      ->add_option("--steps", options->steps,
+                   "write every leading edge at a STEP pin to a CSV file: cycle,axis,direction")
       ->type_name("FILE");
   command->callback([options] { line_in_simulation(*options); });
 }

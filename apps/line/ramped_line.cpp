@@ -14,8 +14,9 @@ namespace trammel::app {
 
 machine::Machine in_pulses(const machine::Machine& machine, std::size_t motors) {
   if (motors > machine.motors()) {
-    throw UsageError(fmt::format("--to: the machine has {} motors; --machine names one with more, --no-ramp needs none",
-                                 machine.motors()));
+    throw UsageError(fmt::format(
+        "--to: the machine has {} motors. Give a machine file with more (--machine), or --no-ramp, which needs none",
+        machine.motors()));
   }
   // In the card's order; a rotary letter only where the others do not suffice.
   const std::string_view letters = motors < card_map::kMaxAxes ? "XYZUVWE" : "XYZAUVWE";
@@ -52,7 +53,8 @@ run::ProgramLines ramped_line(const machine::Machine& machine, const std::vector
   if (std::all_of(pulses.begin(), pulses.end(), [](std::int64_t p) { return p == 0; })) {
     throw UsageError("line: no axis moves");
   }
-  if (seconds > kLongest) throw UsageError("the line takes more than 1,000 minutes; without a ramp (--no-ramp) it may");
+  if (seconds > kLongest)
+    throw UsageError("the line takes more than 1,000 minutes, which is allowed only without ramps (--no-ramp)");
   std::string text = fmt::format("G93 G91 G1 F{:.9f}", 60 / seconds);
   for (std::size_t i = 0; i < pulses.size(); ++i) text += fmt::format(" {}{}", machine.axes[i].letter, pulses[i]);
   return [text] { return std::make_unique<gcode::TextLines>(text, "line"); };

@@ -113,16 +113,19 @@ void linuxcnc_command(const LinuxcncOptions& options) {
 
 void add_linuxcnc_command(CLI::App& app) {
   auto options = std::make_shared<LinuxcncOptions>();
-  CLI::App* command = app.add_subcommand("linuxcnc", "own a card for LinuxCNC's HAL component and its planner module");
-  command->add_option("--name", options->name, "of the memory that LinuxCNC's modules are loaded with (name=)")
+  CLI::App* command = app.add_subcommand(
+      "linuxcnc", "drive a card for LinuxCNC, whose HAL component or planner module sends the motion");
+  command
+      ->add_option("--name", options->name,
+                   "name of the shared memory with LinuxCNC. Load LinuxCNC's modules with the same name (name=NAME)")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--units", options->units, "LinuxCNC's linear units, for its planner module")
+  command->add_option("--units", options->units, "linear units of LinuxCNC. Needed for its planner module only")
       ->check(CLI::IsMember({"mm", "inch"}))
       ->capture_default_str();
   command
       ->add_option("--record", options->record,
-                   "write each period as it was sent, and each step of a simulated card, as CSV")
+                   "write each period as it was sent, and each step of a simulated card, to a CSV file")
       ->type_name("FILE");
   options->local.engine = "model";  // the Verilated card does not keep up with a kilohertz
   options->local.add_to(*command);

@@ -16,7 +16,7 @@ struct MachineArguments {
 };
 
 void check(const MachineArguments& options) {
-  if (!options.check) throw UsageError("machine: give --check");
+  if (!options.check) throw UsageError("machine: needs --check");
   to_standard_output(stop_text(options.machine.load()));
 }
 
@@ -24,9 +24,10 @@ void check(const MachineArguments& options) {
 
 void add_machine_command(CLI::App& app) {
   auto options = std::make_shared<MachineArguments>();
-  CLI::App* command = app.add_subcommand("machine", "what follows from the machine file");
+  CLI::App* command = app.add_subcommand("machine", "calculate stopping distances from the machine file (--check)");
   command->add_flag("--check", options->check,
-                    "how far each axis goes on while it stops, and whether that fits behind its limit switches");
+                    "show how far each axis moves while it stops, and whether that fits into the overtravel behind its "
+                    "limit switches (required)");
   options->machine.add_to(*command);
   command->callback([options] { check(*options); });
 }

@@ -22,19 +22,18 @@ std::string switch_text(const MachineAxis& axis, const StopWay& way) {
   const char* const unit = unit_of(axis);
   const double spare = axis.overtravel - way.behind_switch();
   return fmt::format(
-      "  limit switch: {0:.3g} {4} while its filter lasts + {1:.3g} {4} of ramp = {2:.3g} {4}; overtravel {3:g} {4}: "
-      "{5}\n",
+      "  limit switch: {0:.3g} {4} in its filter time + {1:.3g} {4} of ramp = {2:.3g} {4}; overtravel {3:g} {4}: {5}\n",
       *way.filter, way.ramp, way.behind_switch(), axis.overtravel, unit,
       spare >= 0 ? std::string("a ramp fits")
-                 : fmt::format("a ramp does not fit, {:.3g} {} are missing", -spare, unit));
+                 : fmt::format("a ramp does not fit, it needs {:.3g} {} more", -spare, unit));
 }
 
 std::string soft_text(const Machine& machine, const MachineAxis& axis, const StopWay& way) {
   if (!std::isfinite(axis.min) && !std::isfinite(axis.max))
-    return axis.endless ? "  soft limits: none, it is endless\n" : "  soft limits: none\n";
+    return axis.endless ? "  soft limits: none, the axis is endless\n" : "  soft limits: none\n";
   const auto end = [](double place) { return std::isfinite(place) ? fmt::format("{:g}", place) : std::string("none"); };
   const std::string guard = machine.inputs.on_soft_limit == machine::OnInput::kImmediate
-                                ? "at once at them, by inputs.on_soft_limit"
+                                ? "immediately at them, as inputs.on_soft_limit says"
                                 : fmt::format("up to {:.3g} {} behind them", way.ramp, unit_of(axis));
   return fmt::format("  soft limits: {} to {} {}; jogs brake {:.3g} {} before them, the card's own guard stops {}\n",
                      end(axis.min), end(axis.max), unit_of(axis), way.ramp, unit_of(axis), guard);
@@ -42,7 +41,7 @@ std::string soft_text(const Machine& machine, const MachineAxis& axis, const Sto
 
 std::string axis_text(const Machine& machine, std::size_t n, const StopWay& way) {
   const MachineAxis& axis = machine.axes[n];
-  std::string text = fmt::format("axis {}: {:g} {}/s, from there to rest v * T/2 = {:.3g} {}\n", axis.letter,
+  std::string text = fmt::format("axis {}: stops from {:g} {}/s in v * T/2 = {:.3g} {}\n", axis.letter,
                                  axis.max_velocity, unit_of(axis), way.ramp, unit_of(axis));
   if (way.filter) text += switch_text(axis, way);
   return text + soft_text(machine, axis, way);
@@ -58,11 +57,12 @@ std::string limits_text(const Machine& machine, const std::vector<StopWay>& ways
     short_ones += fmt::format("{}{}", short_ones.empty() ? "" : ", ", machine.axes[n].letter);
   }
   if (!any) return "limit switches: none\n";
-  if (machine.inputs.on_limit == machine::OnLimit::kImmediate) return "limit switches: at once, by inputs.on_limit\n";
-  if (short_ones.empty()) return "limit switches: on a ramp\n";
+  if (machine.inputs.on_limit == machine::OnLimit::kImmediate)
+    return "limit switches: immediate stop, as inputs.on_limit says\n";
+  if (short_ones.empty()) return "limit switches: stop on a ramp\n";
   return fmt::format(
-      "limit switches: at once, all of them, since a ramp does not fit behind those of axis {}: more overtravel, a "
-      "shorter filter, or a lower max_velocity there\n",
+      "limit switches: immediate stop at all of them, because a ramp does not fit behind those of axis {}. For a ramp, "
+      "this axis needs more overtravel, a shorter filter or a lower max_velocity\n",
       short_ones);
 }
 

@@ -124,15 +124,17 @@ void panel_command(const PanelOptions& options) {
 
 void add_panel_command(CLI::App& app) {
   auto options = std::make_shared<PanelOptions>();
-  CLI::App* command = app.add_subcommand("panel", "a page for a browser to run the machine: jog, home, zero, programs");
+  CLI::App* command = app.add_subcommand(
+      "panel", "serve a page with which a browser runs the machine: jog, home, set zero, run programs");
   command
       ->add_option("--listen", options->listen,
-                   "address and port of the page; port 0: one that is free. Its address, with a token, is printed")
+                   "address and TCP port of the page. Port 0 is any free port. The command prints the page's address, "
+                   "with a token")
       ->type_name("HOST:PORT")
       ->capture_default_str();
   command
       ->add_option("--settings", options->settings,
-                   "where offsets (work zeros) are kept (default: nowhere, they end with the server)")
+                   "file in which work offsets are kept (default: none; they are lost when the server ends)")
       ->type_name("FILE");
   options->local.add_to(*command);
   options->machine.add_to(*command);

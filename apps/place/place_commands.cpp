@@ -31,7 +31,8 @@ struct PlaceOptions {
 
 transport::CardUrl card_of(const PlaceOptions& options, const char* command) {
   if (const auto url = options.card.url()) return *url;
-  throw UsageError(fmt::format("{}: needs --card: a simulated card of this process has been nowhere yet", command));
+  throw UsageError(
+      fmt::format("{}: needs --card, because a card that this command simulates has no position yet", command));
 }
 
 // A line for each axis: where it stands, and what the card knows of that.
@@ -54,7 +55,7 @@ std::string table(const machine::Machine& machine, const run::CardPlace& place) 
 }
 
 constexpr const char* kNoPlace =
-    "no place since the card's reset: the first command that moves it sets machine zero where it stands\n";
+    "no position since the card's reset: the first command that moves the card sets machine zero to where it stands\n";
 constexpr const char* kOtherScales =
     "the card's place was counted in other scales than those of this machine file (--machine)\n";
 
@@ -92,7 +93,7 @@ void zero(const PlaceOptions& options) {
   with_card(card_of(options, "zero"), Purpose::kMove, [&](driver::Card& card, transport::Connection&) {
     require_axes(card, machine);
     const driver::Status status = card.read_status();
-    if (status.busy) throw UsageError("zero: the card moves, or holds in a motion: zero is set where it stands");
+    if (status.busy) throw UsageError("zero: the card is moving, or holds in a motion. Set zero when it is at rest");
     run::set_zero(card, machine, letters_of(options.axes), options.homed);
     to_standard_output(place_text(machine, run::read_card_place(card)));
   });
@@ -125,12 +126,13 @@ std::string cures_of_the_rest(const machine::Machine& machine, const run::CardPl
   if (status.busy && status.held) text += "next     run a program: it drops the motion in which the card holds\n";
   if (status.busy && !status.held) text += "next     wait: the card moves\n";
   if (!place.was_set()) return text + "next     run a program, or `trammel zero` at the machine's zero\n";
-  if (!run::scales_fit(place, machine)) return text + "next     give the machine file that the place was set with\n";
+  if (!run::scales_fit(place, machine))
+    return text + "next     give the machine file with which the position was set (--machine)\n";
   const std::string lost = run::axes_without(machine, place.bits.valid);
   if (!lost.empty()) {
     text += fmt::format(
-        "next     bring {} to a known place and run `trammel zero {}`; or --trust-position, if no step "
-        "was lost\n",
+        "next     bring {} to a known position and run `trammel zero {}`; or give --trust-position, if you know that "
+        "no step was lost\n",
         lost, lost);
   }
   const bool free = text.empty() && place.now.faults == 0;
@@ -142,7 +144,7 @@ std::string how_to_resume(const CardChoice& card) {
   try {
     const std::optional<ResumeRecord> record = card.resume().read();
     if (!record || record->state == ResumeRecord::State::kDone || record->plan.empty()) return {};
-    return fmt::format("next     `trammel run {} --resume`, with its other options, goes on with the interrupted run\n",
+    return fmt::format("next     `trammel run {} --resume`, with its other options, resumes the interrupted run\n",
                        record->key.program);
   } catch (const UsageError&) {
     return {};
@@ -176,11 +178,12 @@ void add_place_commands(CLI::App& app) {
     command->callback([options, run] { run(*options); });
     return command;
   };
-  add("position", "where the machine stands, in machine coordinates, and whether that is valid and homed", position);
-  CLI::App* zero_command = add("zero", "set machine zero of the named axes where they stand", zero);
+  add("position", "show the position of each axis in machine coordinates, and whether it is valid and homed", position);
+  CLI::App* zero_command = add("zero", "set machine zero of the named axes to where they stand", zero);
   zero_command->add_option("axes", options->axes, "letters of the axes")->required()->type_name("AXIS");
-  zero_command->add_flag("--homed", options->homed, "they stand at their reference: they count as homed");
-  add("recover", "what stopped the card, where it stands, and what to do next", recover);
+  zero_command->add_flag("--homed", options->homed,
+                         "also mark the axes as homed. Use it if they stand at their reference");
+  add("recover", "tell what stopped an external card, where the machine stands, and what to do next", recover);
 }
 
 }  // namespace trammel::app

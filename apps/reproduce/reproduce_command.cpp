@@ -141,11 +141,11 @@ void reproduce_papers(const ReproduceOptions& options) {
 void add_reproduce_command(CLI::App& app) {
   auto options = std::make_shared<ReproduceOptions>();
   CLI::App* command =
-      app.add_subcommand("reproduce", "make every table and figure of both papers again, with a verdict on each");
+      app.add_subcommand("reproduce", "compute every table and figure of both papers again, with a verdict on each");
   command->add_option("--out", options->out, "folder for the pages, pictures and data")
       ->capture_default_str()
       ->type_name("DIR");
-  command->add_flag("--progress", options->progress, "progress bar even if stderr is not a terminal");
+  command->add_flag("--progress", options->progress, "show the progress even if standard error is not a terminal");
   command->callback([options] { reproduce_papers(*options); });
 }
 

@@ -35,7 +35,7 @@ class CardWatch final : public run::Observer {
   void progress(const run::Progress& /*progress*/) override {
     if (connection_.reconnections() != reconnections_) {
       reconnections_ = connection_.reconnections();
-      tell("note", "the connection was lost and is there again; the motion goes on");
+      tell("note", "the connection was lost and made again; the motion continues");
       // The run's own hold is not the server's: it ends that with its first piece that moves, on a ramp.
       if (!runner_.begins()) card_.request_hold(false);
     }
@@ -80,9 +80,13 @@ gcode::Coordinates start_of(const machine::Machine& machine, const ResumeRecord&
 
 ResumeRecord interrupted_run(driver::Card& card, const CardRunOptions& options) {
   const std::optional<ResumeRecord> record = options.card.resume().read();
-  if (!record) throw UsageError("--resume: no run on this card was begun with this user's files: give --resume-file");
-  if (record->state == ResumeRecord::State::kDone) throw UsageError("--resume: the last run has come to its end");
-  if (record->plan.empty()) throw UsageError("--resume: the last run was one with --stream, which is read only once");
+  if (!record)
+    throw UsageError(
+        "--resume: no record of a run on this card was found. If that run had a --resume-file, or another user started "
+        "it, name its file with --resume-file");
+  if (record->state == ResumeRecord::State::kDone)
+    throw UsageError("--resume: the last run on this card reached its end, so there is nothing to resume");
+  if (record->plan.empty()) throw UsageError("--resume: the last run used --stream, so it cannot be resumed");
   const std::string differs = difference(record->key, options.key);
   if (!differs.empty()) throw UsageError("--resume: not the run that was interrupted: " + differs);
   check_zeros(card, *record);
@@ -96,14 +100,15 @@ ResumeRecord resumed_run(driver::Card& card, const machine::Machine& machine, co
   if (!found.was_set()) throw UsageError("--resume: the card was reset since the interrupted run");
   take_over(card, options.card, machine, true);
   const ResumeRecord record = interrupted_run(card, options);
-  if (record.state != ResumeRecord::State::kStopped) throw UsageError("--resume: its place on the path is not known");
+  if (record.state != ResumeRecord::State::kStopped)
+    throw UsageError("--resume: the place on the path where the run stopped is not known");
   return record;
 }
 
 void check_plan(const ResumeRecord& record, const run::Plan& plan) {
   if (record.plan == plan.identity) return;
   throw UsageError(
-      "--resume: not the run that was interrupted: this planner, or this card, makes other commands of the program");
+      "--resume: not the run that was interrupted: this planner, or this card, makes other commands from the program");
 }
 
 // The settings of a run that begins amid the program; the first line begins where it did.
@@ -129,7 +134,7 @@ std::optional<ResumeRecord> run_before(driver::Card& card, const CardRunOptions&
 }
 
 void tell_of_begin(const run::Plan& plan, const machine::Machine& machine) {
-  std::string text = fmt::format("the run goes on at line {}", plan.begin_line);
+  std::string text = fmt::format("the run begins at line {}", plan.begin_line);
   if (plan.ticks_done != 0) text += fmt::format(", {} ticks into a path", plan.ticks_done);
   text += ", at " + run::place_text(kinematics::Kinematics(machine).coordinates(plan.start), machine);
   std::string on;
@@ -172,7 +177,7 @@ class Record {
   }
   void interrupted() noexcept {
     if (record_.plan.empty() || !keep_place_of_stop(card_, file_)) return;
-    tell("note", place() + "`trammel run` with the same arguments and --resume goes on with the run");
+    tell("note", place() + "`trammel run` with the same arguments and --resume continues the run");
   }
 
  private:
@@ -260,7 +265,7 @@ CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine
   take_over(card, options.card, machine, options.resume);
   const driver::Snapshot now = card.read_snapshot();
   if (now.position != found.now.position) {
-    throw UsageError("--card: it has moved while the program was planned: run the program again");
+    throw UsageError("--card: the card moved while the program was planned. Run the program again");
   }
   run::keep_place(card, found, run::scales_of(machine), run::motors_of(machine));
   run::set_keeps_place(card, machine);

@@ -39,8 +39,9 @@ std::string line_to(const machine::Machine& machine, const gcode::Coordinates& t
 void ask(const std::string& what, bool yes) {
   tell("note", what);
   if (yes) return;
-  if (::isatty(STDIN_FILENO) == 0) throw UsageError("nothing has moved: give --yes to let it go there first");
-  std::cerr << "go there? [y/N] " << std::flush;
+  if (::isatty(STDIN_FILENO) == 0)
+    throw UsageError("nothing has moved, because there is no terminal on which to ask. Give --yes to allow this move");
+  std::cerr << "move there? [y/N] " << std::flush;
   std::string answer;
   std::getline(std::cin, answer);
   if (answer != "y" && answer != "Y" && answer != "yes") throw UsageError("nothing has moved");
@@ -61,9 +62,10 @@ void go_there(driver::Card& card, const machine::Machine& machine, const planner
   settings.stands_at = from;
   run::Runner runner([text] { return std::make_unique<gcode::TextLines>(text, "the way there"); }, machine,
                      planner::limits_of(card.identification()), settings);
-  if (runner.plan().end != to) throw UsageError("the machine is not where the run begins, and no line leads there");
-  ask(fmt::format("the machine stands at {}, but the run begins at {}: it goes there first, on a straight line at "
-                  "{:g} mm/s",
+  if (runner.plan().end != to)
+    throw UsageError("the machine is not where the run begins, and no straight line leads exactly there");
+  ask(fmt::format("the machine stands at {}, but the run begins at {}: the machine moves there first, on a straight "
+                  "line at {:g} mm/s",
                   run::place_text(here, machine), run::place_text(there, machine), speed),
       yes);
   const MotionWatchdog watchdog(card, machine.motion);

@@ -34,7 +34,7 @@ CLI::Validator between(double least, double most, const std::string& what) {
 double percent_of(const std::string& option, std::string_view text, double most, const char* why = "") {
   const auto value = number(text);
   if (!value || !(*value >= 0) || *value > most) {
-    throw UsageError(fmt::format("{}: {} is no override from 0 to {:g} percent{}", option, text, most,
+    throw UsageError(fmt::format("{}: {} is not an override from 0 to {:g} percent{}", option, text, most,
                                  value && *value > most ? why : ""));
   }
   return *value;
@@ -50,7 +50,7 @@ gcode::CodeWord code_word_of(const std::string& text) {
   constexpr double kLargest = 9999.9;
   const double tenths = value.value_or(0) * 10;
   if (!value || *value > kLargest || std::abs(tenths - std::round(tenths)) > 1e-6) {
-    throw UsageError(fmt::format("--accept: {} is no G or M word such as M900 or M862.3", text));
+    throw UsageError(fmt::format("--accept: {} is not a G or M word such as M900 or M862.3", text));
   }
   const gcode::CodeWord word{letter, static_cast<int>(std::round(tenths))};
   const std::string_view why = gcode::why_not_left_out(word);
@@ -74,70 +74,86 @@ void refuse_overlaps(const std::vector<OperatorEvent>& events) {
   }
 }
 
-}  // namespace
-
-void MotionChoice::add_to(CLI::App& command) {
+// Speed and inputs, as an operator sets them from outside of the program.
+void add_operator_options(CLI::App& command, MotionChoice& choice) {
   command
-      .add_option("--override", percent,
-                  "percent of the planned speed, from the start on; 0 to 100, or to 100 times the machine file's "
-                  "max_override (default: 100)")
+      .add_option("--override", choice.percent,
+                  "feed override from the start on: percent of the planned speed, 0 to 100, or to 100 times "
+                  "max_override of the machine file (default: 100)")
       ->type_name("PERCENT");
   command
-      .add_option("--rapid-override", rapid_percent, "percent of the planned speed of rapids, 0 to 100 (default: 100)")
+      .add_option("--rapid-override", choice.rapid_percent,
+                  "override of rapids (G0, G28): percent of the planned speed, 0 to 100 (default: 100)")
       ->type_name("PERCENT");
-  command.add_option("--override-at", override_at, "change the override at a time of the card (repeatable)")
+  command
+      .add_option("--override-at", choice.override_at,
+                  "change the feed override to PERCENT at this card time (repeatable)")
       ->type_name("SECONDS:PERCENT")
       ->allow_extra_args(false);
   command
-      .add_option("--hold-at", hold_at,
-                  "hold at a time of the card, for so many seconds from the request on (repeatable)")
+      .add_option("--hold-at", choice.hold_at, "hold at this card time, and resume DURATION seconds later (repeatable)")
       ->type_name("SECONDS:DURATION")
       ->allow_extra_args(false);
   command
-      .add_option("--input-at", input_at,
-                  fmt::format("set an input of the simulated card (0 to {}) to a level (0 or 1) at a time of the card "
-                              "(repeatable; before, all are 0). Input estop: the emergency stop's button, 1 pressed",
-                              sim::kInputs - 1))
+      .add_option(
+          "--input-at", choice.input_at,
+          fmt::format(
+              "set an input of the simulated card (0 to {}) to a level (0 or 1) at this card time (repeatable). Until "
+              "then the input is at rest. Input estop is the emergency stop button: 1 pressed, 0 released",
+              sim::kInputs - 1))
       ->type_name("SECONDS:INPUT:LEVEL")
       ->allow_extra_args(false);
-  command.add_option("--feed-scale", feed_scale, "factor on every programmed feed, 0.001 to 1000 (default: 1)")
+}
+
+}  // namespace
+
+void MotionChoice::add_to(CLI::App& command) {
+  add_operator_options(command, *this);
+  command
+      .add_option("--feed-scale", feed_scale,
+                  "multiply every programmed feed by this factor, 0.001 to 1000 (default: 1)")
       ->check(between(0.001, 1000, "a factor"))
       ->type_name("FACTOR");
   command
-      .add_option(
-          "--limit-bus", bytes_per_second,
-          "the bus carries so many bytes a second of card time, 4 a word, both ways together (default: no limit)")
-      ->check(between(1, 1e9, "bytes a second"))
+      .add_option("--limit-bus", bytes_per_second,
+                  "limit the simulated bus to this many bytes per second of card time. Each word read or written "
+                  "counts 4 bytes (default: no limit)")
+      ->check(between(1, 1e9, "bytes per second"))
       ->type_name("BYTES_PER_SECOND");
   command
-      .add_option("--from-line", first_line,
-                  "begin at this line; those before it set modes, offsets, position and outputs alone")
+      .add_option(
+          "--from-line", first_line,
+          "begin at line N of the program. The lines before it only set modes, offsets, outputs and the position")
       ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
       ->type_name("N");
   command
       .add_option("--arcs", arcs,
-                  "what makes arcs: generator, accumulator-8 (in 8 directions), accumulator (in 4; helices: "
-                  "chords), or chords; the next of these where one cannot")
+                  "how to make arcs. generator: the card's arc generator. accumulator-8: unit steps in 8 directions. "
+                  "accumulator: unit steps in 4 directions; helices become chords. chords: straight lines. If one "
+                  "cannot make an arc, the next one is used")
       ->check(CLI::IsMember({"generator", "accumulator-8", "accumulator", "chords"}))
       ->capture_default_str();
   command
       .add_option("--profile", profile,
-                  "how the speed changes: trapezoid or s-curve (default: s-curve where every axis has a max_jerk)")
+                  "how the speed changes. trapezoid: constant acceleration. s-curve: the acceleration changes by "
+                  "max_jerk at most (default: s-curve if every axis has a max_jerk, else trapezoid)")
       ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
       ->type_name("PROFILE");
   command
       .add_option("--accept", accept,
-                  "leave out the lines that begin with these words, as those of heaters and fans (repeatable)")
+                  "leave out the lines that begin with these words, such as those for heaters and fans (repeatable)")
       ->type_name("M900,...")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
-  command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
+  command.add_flag("--single-block", single_block,
+                   "stop at the end of each line of the program, and send the next line when the card is idle");
+  command.add_flag("--no-block-delete", run_deleted,
+                   "run the lines that begin with '/', too (default: leave them out)");
 }
 
 simulation::Operation MotionChoice::operation(double max_percent) const {
   simulation::Operation result;
-  constexpr const char* kMax = " (max_override of the machine file sets the most)";
+  constexpr const char* kMax = " (max_override of the machine file sets the maximum)";
   result.percent = percent_of("--override", percent, max_percent, kMax);
   result.rapid_percent = percent_of("--rapid-override", rapid_percent, 100);
   result.bytes_per_second = bytes_per_second.value_or(std::numeric_limits<double>::infinity());
@@ -162,7 +178,7 @@ simulation::Operation MotionChoice::operation(double max_percent) const {
   for (const OperatorEvent& event : result.events) {
     if (event.kind == OperatorEvent::Kind::kOverride) last = event.percent;
   }
-  if (last == 0) throw UsageError("--override: 0 percent to the end, and the program would never end");
+  if (last == 0) throw UsageError("--override: with 0 percent at the end the program would never finish");
   return result;
 }
 

@@ -50,8 +50,8 @@ std::map<int, double> load_parameters(const std::string& file) {
     const bool good = read(first, parameter) && parameter >= 1 && parameter <= kLargestNumber && read(second, value) &&
                       std::abs(value) <= kLargestValue && word_of(rest).empty();
     if (!good) {
-      throw UsageError(
-          fmt::format("{}:{}: not a parameter's number (1 to {}) and its value", file, number, kLargestNumber));
+      throw UsageError(fmt::format("{}:{}: must be the number of a parameter (1 to {}) and its value", file, number,
+                                   kLargestNumber));
     }
     parameters[parameter] = value;
   }

@@ -69,12 +69,12 @@ void ProgramFile::copy_to_temporary(std::uint64_t limit) {
     copied += chunk.size();
     if (copied > limit) {
       throw UsageError(
-          fmt::format("{}: a program of more than {} MiB from no regular file: raise --pipe-limit, or read it with "
-                      "--stream while it runs",
+          fmt::format("{}: the program is longer than {} MiB and does not come from a regular file. Raise "
+                      "--pipe-limit, or give --stream to read it while it runs",
                       name_, limit >> 20U));
     }
     if (!write_whole(copy_->descriptor(), chunk)) {
-      throw std::runtime_error(fmt::format("{}: cannot be copied to {} (TMPDIR names another folder): {}", name_,
+      throw std::runtime_error(fmt::format("{}: cannot be copied to {} (set TMPDIR to use another folder): {}", name_,
                                            folder.string(), strerror(errno)));
     }
     line = unfinished_line(line, chunk);

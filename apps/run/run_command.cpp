@@ -71,17 +71,18 @@ void refuse_contradictions(const RunArguments& options) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
   if (options.stream) {
-    refuse("--pipe-limit", options.pipe_limit.has_value(), "nothing is copied with --stream");
-    refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
-    refuse("--report", options.report.has_value(), "needs the whole program first, not --stream");
+    refuse("--pipe-limit", options.pipe_limit.has_value(), "not with --stream, which copies nothing");
+    refuse("--plot", options.plot.has_value(), "needs the whole program before the run, so not with --stream");
+    refuse("--report", options.report.has_value(), "needs the whole program before the run, so not with --stream");
   }
-  refuse("--report-window", options.report_window && !options.report, "there is no --report");
-  refuse("--resume", options.resume && options.stream, "needs the whole program first, not --stream");
-  refuse("--resume", options.resume && options.motion.first_line != 1, "begins at its own place, not at --from-line");
+  refuse("--report-window", options.report_window && !options.report, "needs --report");
+  refuse("--resume", options.resume && options.stream, "needs the whole program before the run, so not with --stream");
+  refuse("--resume", options.resume && options.motion.first_line != 1,
+         "not with --from-line: it begins where the run was interrupted");
   refuse("--report", options.report && !report::page_is_built(), report::kHowToBuildPage);
-  refuse("--parameters", options.parameters == "-", "needs a file: it is read, too");
+  refuse("--parameters", options.parameters == "-", "needs a file, because it is also read");
   if (!options.check) return;
-  constexpr const char* kWhy = "nothing runs with --check";
+  constexpr const char* kWhy = "not with --check, which runs nothing";
   refuse("--steps", options.steps.has_value(), kWhy);
   refuse("--path-steps", options.path_steps.has_value(), kWhy);
   refuse("--outputs", options.outputs.has_value(), kWhy);
@@ -94,9 +95,11 @@ void refuse_contradictions(const RunArguments& options) {
 
 void refuse_rapids_at_zero(const RunArguments& options, double rapid_percent, const run::Plan& plan) {
   if (rapid_percent != 0) return;
-  if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
+  if (options.stream)
+    throw UsageError("--rapid-override: 0 needs the whole program before the run, so not with --stream");
   if (plan.rapids == 0) return;
-  throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
+  throw UsageError(fmt::format(
+      "--rapid-override: at 0 percent this program would never finish, because it has {} rapids", plan.rapids));
 }
 
 void tell_of_nothing(const run::Plan& plan) {
@@ -271,7 +274,8 @@ simulation::RunOptions simulation_options(const RunArguments& options, const mac
 void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double planned_seconds) {
   if (const auto text = long_run_note(engine, planned_seconds)) tell("note", *text);
   if (engine.axes != axes) {
-    tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
+    tell("note", fmt::format("the trace shows a card with {} axes, because only cards with 4 or 8 axes can be traced",
+                             engine.axes));
   }
 }
 
@@ -377,7 +381,8 @@ void write_results(const Simulation& of, PageListeners& listeners, const simulat
 void run_in_simulation(const RunArguments& options) {
   refuse_contradictions(options);
   if (const auto url = options.card.url()) return run_on_card(options, *url);
-  if (options.resume) throw UsageError("--resume: a simulated card ends with its run; give it with --card");
+  if (options.resume)
+    throw UsageError("--resume: needs --card, because a run on a card that this command simulates cannot be resumed");
   SimulationFiles files(options);
   const machine::Machine machine = options.machine.load();
   warn(jerk_warnings(machine));
@@ -416,47 +421,61 @@ void run_in_simulation(const RunArguments& options) {
 void add_run_command(CLI::App& app) {
   auto options = std::make_shared<RunArguments>();
   CLI::App* command =
-      app.add_subcommand("run", "run a G-code program on the simulated card, or on one outside (--card)");
+      app.add_subcommand("run", "run a G-code program on the simulated card, or on an external card (--card)");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);
   options->engine.add_to(*command, "1000000 with engine rtl, the machine file's with model");
   options->motion.add_to(*command);
   options->world.add_to(*command);
-  command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
-  command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
+  command->add_option("--json", options->json, "write the summary to a JSON file")->type_name("FILE");
+  command
+      ->add_option("--steps", options->steps,
+                   "write every leading edge at a STEP pin to a CSV file: cycle,axis,direction")
       ->type_name("FILE");
-  command->add_option("--path-steps", options->path_steps, "every step of the path: command,tick,axis,direction")
+  command
+      ->add_option("--path-steps", options->path_steps,
+                   "write every step of the path to a CSV file: command,tick,axis,direction")
       ->type_name("FILE");
-  command->add_option("--outputs", options->outputs, "every change of an output: cycle,output,level")
+  command
+      ->add_option("--outputs", options->outputs, "write every change of an output to a CSV file: cycle,output,level")
       ->type_name("FILE");
   command
       ->add_option("--parameters", options->parameters,
-                   "parameters, offsets, homes and tool: read before the run, written behind it")
+                   "file of the program's parameters, offsets, homes and tool. It is read before the run if it exists, "
+                   "and written after a successful run (default: none of them is kept)")
       ->type_name("FILE");
-  command->add_option("--plot", options->plot, "picture of path and speed")->type_name("FILE.svg")->check(svg_file());
-  command->add_option("--report", options->report, "page of the run: path, speeds, pins, program; opens in a browser")
+  command->add_option("--plot", options->plot, "write a picture of path and speed to an SVG file")
+      ->type_name("FILE.svg")
+      ->check(svg_file());
+  command
+      ->add_option("--report", options->report,
+                   "write a page of the run to an HTML file, for a browser: path, speeds, pins, program")
       ->type_name("FILE")
       ->check(page_file());
   command
-      ->add_option("--report-window", options->report_window,
-                   "only this stretch's pulses in the page, seconds of card time")
+      ->add_option(
+          "--report-window", options->report_window,
+          "with --report: show the pulses of this interval only, seconds of card time. Either end may be left out")
       ->type_name("FROM:TO");
-  command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
+  command->add_flag("--progress", options->progress, "show the progress even if standard error is not a terminal");
   command->add_flag("--resume", options->resume,
-                    "with --card: go on where the last run of this program was interrupted, with the same steps");
-  command->add_flag("--yes", options->yes, "with --resume and --from-line: go to the run's begin without a question");
-  command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
+                    "with --card: resume where the last run of this program was interrupted. The steps are those of "
+                    "the uninterrupted run");
+  command->add_flag("--yes", options->yes,
+                    "with --resume and --from-line: move to the position where the run begins without asking");
+  command->add_flag("--check", options->check, "read, check, plan and time the program; nothing runs");
   command->add_flag("--stream", options->stream,
-                    "read the program while it runs: an error in it is a stop on the way, status 1");
+                    "read the program while it runs, without checking the whole of it first. At an error the machine "
+                    "stops in the middle of the program, and the exit status is 1");
   command
       ->add_option("--pipe-limit", options->pipe_limit,
-                   fmt::format("longest program that is read from standard input, a pipe or a device, which is copied "
-                               "first (default {})",
+                   fmt::format("maximum size of a program from standard input, a pipe or a device, in MiB. Such a "
+                               "program is copied first (default {})",
                                kDefaultPipeLimit))
       ->transform(whole_number(1, 1'000'000, "MiB"))
       ->type_name("MIB");
-  command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
+  command->footer("One FILE may be '-' for standard output. The summary then goes to standard error.");
   command->callback([options] { run_in_simulation(*options); });
 }
 

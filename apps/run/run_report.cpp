@@ -112,14 +112,15 @@ std::string counted(std::uint64_t count, std::string_view noun) {
 std::string probes_planned(const run::Plan& plan) {
   if (plan.probes == 0) return {};
   return fmt::format(
-      "  probes taken to end at their targets: {}; lines that depend on them, checked when reached: {}\n", plan.probes,
-      plan.lines_on_probes);
+      "  probes, planned as if they ended at their targets: {}; lines that depend on them and are checked when "
+      "reached: {}\n",
+      plan.probes, plan.lines_on_probes);
 }
 
 std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   const std::array<std::pair<std::string_view, const char*>, 8> reasons{{
       {"|M0|M1|", "stops for the operator, which a simulation does not make:"},
-      {"|G64 Q|", "no lines are joined to fewer (naive cam):"},
+      {"|G64 Q|", "lines are not joined (naive CAM detector):"},
       {"|M3|M4|M5|M7|M8|M9|", "no output for them in [outputs] of the machine file:"},
       {"|S|", "no output for it in [spindle] of the machine file:"},
       {"|M6|", "tool changes, each a stop:"},
@@ -162,7 +163,7 @@ std::string blends_text(const run::Blends& blends) {
   say(planner::Corner::kNoCurve, "with an arc or helix in another plane, or without room for an arc");
   say(planner::Corner::kInvisible, "a blend would stay within a quarter of a pulse");
   say(planner::Corner::kFaster, "a blend would take longer");
-  return kept.empty() ? text : text + "  corners kept under G64 P:" + kept + "\n";
+  return kept.empty() ? text : text + "  corners not rounded by G64 P:" + kept + "\n";
 }
 
 nlohmann::ordered_json blends_json(const run::Blends& blends) {
@@ -191,14 +192,14 @@ nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds)
 std::vector<std::string> plan_warnings(const run::Plan& plan) {
   std::vector<std::string> lines;
   for (const run::FeedNotReached& feed : plan.feeds_not_reached) {
-    lines.push_back(fmt::format("{} {} not reach the feed: {}; the furthest off at {}:{}, {} of {} mm/min", feed.count,
+    lines.push_back(fmt::format("{} {} not reach the feed: {}; the worst is at {}:{}, {} of {} mm/min", feed.count,
                                 feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), plan.file, feed.line,
                                 number(feed.reached), number(feed.wanted)));
   }
   if (const auto dwells = plan.accepted.find("G4 P"); dwells != plan.accepted.end()) {
     lines.push_back(
-        fmt::format("{}: G4 P is in seconds here ({} {}); the program has words of printers, whose firmware takes P as "
-                    "milliseconds: G4 S is seconds to both",
+        fmt::format("{}: G4 P is taken as seconds ({} {}). The program has words of 3D printers, whose firmware takes "
+                    "P as milliseconds; G4 S means seconds to both",
                     plan.file, dwells->second, dwells->second == 1 ? "time" : "times"));
   }
   return lines;
@@ -257,7 +258,7 @@ std::string run_summary(const RunResult& result, const run::PlannedProfile& prof
   text += probes_text(result.end.axes, result.outcome.probes);
   text += outputs_text(result.outputs);
   if (!result.events.empty())
-    text += fmt::format("  overrides, holds and inputs on the way: {}\n", result.events.size());
+    text += fmt::format("  overrides, holds and inputs during the run: {}\n", result.events.size());
   if (result.lockstep_cycles) {
     text += fmt::format("  lockstep: {} cycles, {} comparisons, {} mismatches\n", *result.lockstep_cycles,
                         result.comparisons, kMismatches);

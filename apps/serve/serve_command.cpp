@@ -31,7 +31,7 @@ using namespace std::chrono_literals;
 
 serve::Settings settings_of(const ServeOptions& options) {
   if (options.token && !serve::is_token(*options.token)) {
-    throw UsageError("--token: 1 to 64 letters, digits, '-' and '_'");
+    throw UsageError("--token: must be 1 to 64 letters, digits, '-' and '_'");
   }
   serve::Settings settings;
   settings.token = options.token.value_or(serve::random_token());
@@ -52,7 +52,7 @@ std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
     return options.terminal ? transport::open_pseudo_terminal() : transport::listen_tcp(options.listen, options.port);
   } catch (const driver::LinkError& error) {
     const bool has_port = std::count(options.listen.begin(), options.listen.end(), ':') == 1;
-    throw UsageError(fmt::format("serve: {}{}", error.what(), has_port ? ": --port takes the port" : ""));
+    throw UsageError(fmt::format("serve: {}{}", error.what(), has_port ? ". Give the port with --port" : ""));
   }
 }
 
@@ -103,9 +103,11 @@ void serve_card(const ServeOptions& options) {
   end_serving_at_signals();
   if (!options.terminal && !is_loopback(options.listen)) {
     const bool any = options.listen == "0.0.0.0" || options.listen == "::";
-    tell("warning", fmt::format("--listen {}: the token travels unencrypted, and who has it moves the card: serve it "
-                                "only in a network that you trust{}",
-                                options.listen, any ? "; others name this machine in place of this address" : ""));
+    tell("warning",
+         fmt::format("--listen {}: the token is transmitted unencrypted, and whoever has it can move the card. Serve "
+                     "it only in a network that you trust{}",
+                     options.listen,
+                     any ? "; other computers connect to this computer's own address instead of this one" : ""));
   }
   tell_where(*listener, settings.token);
   bool met = false;
@@ -129,8 +131,8 @@ void serve_card(const ServeOptions& options) {
 void add_hm2_options(CLI::App& command, ServeOptions& options, const std::vector<CLI::Option*>& others) {
   auto* hm2 = command
                   .add_option("--hm2", options.hm2,
-                              fmt::format("in front of LinuxCNC's driver hm2_eth, on a UDP port (without HOST: "
-                                          "127.0.0.1; without PORT: {})",
+                              fmt::format("serve the card to LinuxCNC's driver hm2_eth, on a UDP port instead of a TCP "
+                                          "port (without HOST: 127.0.0.1; without PORT: {})",
                                           hm2::kUdpPort))
                   ->type_name("HOST[:PORT]")
                   ->expected(0, 1)
@@ -138,8 +140,8 @@ void add_hm2_options(CLI::App& command, ServeOptions& options, const std::vector
   for (CLI::Option* const other : others) hm2->excludes(other);
   command
       .add_option("--hm2-lose", options.hm2_lose,
-                  "percent of the datagrams, each way, that are lost on purpose from the first motion on, to try a "
-                  "bad network")
+                  "drop this percentage of the datagrams in each direction, from the first motion on, to test a bad "
+                  "network (default: 0)")
       ->check(CLI::Range(0.0, 100.0))
       ->type_name("PERCENT")
       ->needs(hm2);
@@ -149,49 +151,61 @@ void add_hm2_options(CLI::App& command, ServeOptions& options, const std::vector
 
 void add_serve_command(CLI::App& app) {
   auto options = std::make_shared<ServeOptions>();
-  CLI::App* command = app.add_subcommand("serve", "put a simulated card on a TCP port or a pseudo-terminal");
+  CLI::App* command =
+      app.add_subcommand("serve", "serve a simulated card to other programs, on a TCP port or a pseudo-terminal");
   command
       ->add_option("--engine", options->engine,
-                   "rtl: the Verilated card in lockstep with the golden model; model: the model alone (default: rtl, "
-                   "with --hm2 model)")
+                   "how to simulate the card. rtl: the Verilated RTL, compared with the golden model in every cycle. "
+                   "model: the golden model alone, which is faster (default: rtl; with --hm2, model)")
       ->check(CLI::IsMember({"rtl", "model"}));
-  command->add_option("--clock", options->clock_hz, "clock of the card (default: 1000000, with --hm2 10000000)")
+  command->add_option("--clock", options->clock_hz, "clock of the card (default: 1000000; with --hm2, 10000000)")
       ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ");
-  command->add_option("--axes", options->axes, "axes of the card")
+  command->add_option("--axes", options->axes, "number of axes of the card")
       ->transform(whole_number(1, card_map::kMaxAxes))
       ->capture_default_str();
   auto* listen =
-      command->add_option("--listen", options->listen, "address of this machine; others than loopback let others in")
+      command
+          ->add_option("--listen", options->listen,
+                       "address on which to listen. On any other address than loopback, other computers reach the card")
           ->type_name("ADDRESS")
           ->capture_default_str();
-  auto* port = command->add_option("--port", options->port, "port; 0: one that is free")
+  auto* port = command->add_option("--port", options->port, "TCP port. 0 is any free port")
                    ->transform(whole_number(0, 65535))
                    ->capture_default_str();
-  auto* terminal = command->add_flag("--pty", options->terminal, "a pseudo-terminal in place of a port")
-                       ->excludes(listen)
-                       ->excludes(port);
-  auto* token = command->add_option("--token", options->token, "who says it may move the card (default: a random one)");
-  auto* fast = command->add_flag("--fast", options->fast, "as fast as it can, not in real time");
+  auto* terminal =
+      command
+          ->add_flag("--pty", options->terminal,
+                     "serve on a pseudo-terminal instead of a TCP port. To other programs it looks like a serial line")
+          ->excludes(listen)
+          ->excludes(port);
+  auto* token = command->add_option(
+      "--token", options->token,
+      "token that a client needs to move the card: 1 to 64 letters, digits, '-' and '_' (default: a random one)");
+  auto* fast = command->add_flag("--fast", options->fast, "run the card as fast as possible, not in real time");
   auto* baud = command
                    ->add_option("--baud", options->baud,
-                                "what the link carries in card time, as a serial line would (0: no limit)")
+                                "limit the link to this baud rate, in card time, like a serial line. 0 is no limit")
                    ->transform(whole_number(0, 100'000'000))
                    ->type_name("BAUD")
                    ->capture_default_str();
-  auto* silence = command->add_option("--silence", options->silence, "a client that is silent for so long is let go")
+  auto* silence = command
+                      ->add_option("--silence", options->silence,
+                                   "disconnect a client that has sent nothing for this time, seconds")
                       ->check(positive())
                       ->type_name("SECONDS")
                       ->capture_default_str();
   command
-      ->add_option("--input-at", options->input_at,
-                   fmt::format("set an input of the card (0 to {}) to a level (0 or 1) at a time of the card or soon "
-                               "after; before, each is at rest. Input estop: the emergency stop's button, 1 pressed",
-                               sim::kInputs - 1))
+      ->add_option(
+          "--input-at", options->input_at,
+          fmt::format(
+              "set an input of the card (0 to {}) to a level (0 or 1) at this card time or soon after (repeatable). "
+              "Until then the input is at rest. Input estop is the emergency stop button: 1 pressed, 0 released",
+              sim::kInputs - 1))
       ->type_name("SECONDS:INPUT:LEVEL");
   options->world.add_to(*command);
   command->add_flag("--once", options->once,
-                    "end when the first client has gone, and nobody who came meanwhile is left");
+                    "end when the first client, and every client that has connected since, has disconnected");
   add_hm2_options(*command, *options, {listen, port, terminal, token, fast, baud, silence});
   command->callback([options] { options->hm2 ? serve_hm2(*options) : serve_card(*options); });
 }

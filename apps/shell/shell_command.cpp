@@ -178,10 +178,10 @@ trammel \- {}
 {}.SH EXIT STATUS
 .TP
 .B 0
-all was done
+the command was completed
 .TP
 .B 1
-something failed on the way: a file that could not be written, a card that stopped, a mismatch
+the command failed after it had begun: a file could not be written, the card stopped, or card and model differ
 .TP
 .B 2
 the command line, the machine file or the program was refused; nothing has moved
@@ -193,7 +193,7 @@ the command line, the machine file or the program was refused; nothing has moved
 void add_shell_commands(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* completion =
-      app.add_subcommand("completion", "print a script that completes this command's words in a shell");
+      app.add_subcommand("completion", "print a script with which a shell completes trammel's commands and options");
   completion->add_option("shell", *shell, "the shell: bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));

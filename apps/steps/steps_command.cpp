@@ -130,9 +130,14 @@ void add_steps_command(CLI::App& app) {
       ->type_name("NAME");
   options->curve.add_to(*command);
   options->velocity.add_to(*command);
-  command->add_option("--csv", options->csv, "index,axis,direction,x,y,f of each step ('-': standard output, default)")
+  command
+      ->add_option(
+          "--csv", options->csv,
+          "write index,axis,direction,x,y,f of each step to a CSV file ('-': standard output, which is the default)")
       ->type_name("FILE");
-  command->add_option("--json", options->json, "the same and the times, as JSON ('-': standard output)")
+  command
+      ->add_option("--json", options->json,
+                   "write the same and the times of the steps to a JSON file ('-': standard output)")
       ->type_name("FILE");
   command->callback([options] { print_steps(*options); });
 }

@@ -88,7 +88,7 @@ void ask_world(const WorldOptions& options) {
   } catch (const driver::ArgumentError& error) {
     throw UsageError(fmt::format("world: {}", error.what()));
   } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(fmt::format("world: the server's answer is none: {}", error.what()));
+    throw std::runtime_error(fmt::format("world: the server's answer cannot be read: {}", error.what()));
   }
 }
 
@@ -96,22 +96,25 @@ void ask_world(const WorldOptions& options) {
 
 void add_world_command(CLI::App& app) {
   auto options = std::make_shared<WorldOptions>();
-  CLI::App* command =
-      app.add_subcommand("world", "the machine behind a card of `trammel serve --world`: its state, its buttons");
+  CLI::App* command = app.add_subcommand(
+      "world", "show the simulated machine behind a card of `trammel serve --world`, or press its buttons");
   command
       ->add_option("request", options->words,
-                   "state (default), press NAME, release NAME, alarm X, clear X, or count: the path's steps anew")
+                   "state: show the machine (default). press NAME, release NAME: a button. alarm X, clear X: the alarm "
+                   "of axis X's drive. count: begin to count the path's steps anew")
       ->type_name("REQUEST");
   command
       ->add_option("--when", options->when,
-                   "press or release when a carriage has come there, mm: 'X>40', or the path has so many steps: "
-                   "'steps>2000'")
+                   "press or release later: when a carriage has reached a position in mm, such as 'X>40', or the path "
+                   "has a number of steps, such as 'steps>2000'")
       ->type_name("CONDITION");
-  command->add_option("--longest", options->longest, "wait so long for the answer, in real time")
+  command
+      ->add_option("--longest", options->longest,
+                   "longest wait for the answer, seconds of real time. After it the command ends with status 1")
       ->check(positive())
       ->type_name("SECONDS")
       ->capture_default_str();
-  command->add_flag("--json", options->json, "the state as JSON");
+  command->add_flag("--json", options->json, "print the state as one line of JSON");
   options->card.add_to(*command);
   command->callback([options] { ask_world(*options); });
 }

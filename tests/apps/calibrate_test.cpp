@@ -30,8 +30,8 @@ TEST_F(CalibrateCommand, SaysTheLineAndWritesNothing) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("X: steps_per_mm 80 -> 80.64516 (+0.806 %)\n"));
   EXPECT_THAT(outcome.out, HasSubstr("router.toml:11: steps_per_mm = 80.64516\n"));
-  EXPECT_THAT(outcome.err, HasSubstr("note: nothing is written: --write"));
-  EXPECT_THAT(outcome.err, HasSubstr("`trammel zero` with all of them where they stand, then home again"));
+  EXPECT_THAT(outcome.err, HasSubstr("note: nothing was written. Give --write"));
+  EXPECT_THAT(outcome.err, HasSubstr("`trammel zero` with all axes where they stand, then home again"));
   EXPECT_THAT(outcome.err, HasSubstr("min and max and [homing] distances of axis X"));
   EXPECT_EQ(contents(file_), before_);
   // Without a machine file it is the built-in one, which cannot be written.
@@ -74,7 +74,7 @@ TEST_F(CalibrateCommand, AFileThatCannotBeReplacedStays) {
   EXPECT_THAT(command_.run("calibrate X 100 99 --write --machine " + broken).err, HasSubstr("broken.toml:"));
   const std::string pipe = command_.path("pipe.toml");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THAT(command_.run("calibrate X 100 99 --write --machine " + pipe).err, HasSubstr("is no regular file"));
+  EXPECT_THAT(command_.run("calibrate X 100 99 --write --machine " + pipe).err, HasSubstr("is not a regular file"));
 }
 
 // The card keeps a hash of the scales: after the change it does not say where the machine stands.

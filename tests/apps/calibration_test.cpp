@@ -67,8 +67,8 @@ TEST(Calibration, RefusesDistancesThatTellNothing) {
                                             {infinite, infinite},
                                             {1., std::nan("")}})
     EXPECT_THAT(refusal({"X", commanded, measured, true}), HasSubstr("must be distances other than 0")) << commanded;
-  EXPECT_THAT(refusal({"Y", 100, -99, true}), HasSubstr("Y moved the other way: that is no scale, change `inverted` in "
-                                                        "[axis.y]"));
+  EXPECT_THAT(refusal({"Y", 100, -99, true}),
+              HasSubstr("Y moved in the opposite direction. Change `inverted` in [axis.y]"));
 }
 
 TEST(Calibration, AWholeFactorNeedsForce) {
@@ -94,11 +94,12 @@ TEST(Calibration, BothMotorsOfCrossedBelts) {
 TEST(Calibration, NamesPlacesThatWereMeasuredBefore) {
   std::string text = kMachineFile;
   text.insert(text.find("[axis.y]"), "min = 0\nmax = 300\n");
-  EXPECT_THAT(app::calibrate({"X", 100, 99, false}, text, "m.toml").doubt, HasSubstr("min and max of axis X stay"));
+  EXPECT_THAT(app::calibrate({"X", 100, 99, false}, text, "m.toml").doubt,
+              HasSubstr("min and max of axis X were not changed"));
   EXPECT_EQ(app::calibrate({"Y", 100, 99, false}, text, "m.toml").doubt, "");
   text += "[inputs]\nx_home = 0\n[homing.x]\nsearch_velocity = -10\n";
   EXPECT_THAT(app::calibrate({"X", 100, 99, false}, text, "m.toml").doubt,
-              HasSubstr("min and max and [homing] distances of axis X stay"));
+              HasSubstr("min and max and [homing] distances of axis X were not changed"));
 }
 
 }  // namespace

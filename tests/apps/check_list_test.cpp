@@ -69,7 +69,7 @@ TEST(CheckList, RunsOnTheSimulatedMachine) {
     return outcome.out + outcome.err;
   };
   command.write("nothing.ngc", "M2\n");
-  EXPECT_THAT(step("machine --check", 0), HasSubstr("limit switches: on a ramp"));
+  EXPECT_THAT(step("machine --check", 0), HasSubstr("limit switches: stop on a ramp"));
   EXPECT_THAT(step("info", 0), HasSubstr("axes"));
   EXPECT_THAT(step("selftest --card", 0), HasSubstr("0 requests sent again"));
   step("run nothing.ngc", 0, "run " + command.path("nothing.ngc"));

@@ -67,8 +67,8 @@ TEST(Line, WhatOnlyOneKindOfLineTakes) {
     EXPECT_EQ(outcome.status, 2) << arguments;
     return outcome.err;
   };
-  EXPECT_NE(error_of("--to 5 --slow").find("--slow: for a line with --no-ramp"), std::string::npos);
-  EXPECT_NE(error_of("--to 5 --max-velocity 9").find("--max-velocity: for a line with --no-ramp"), std::string::npos);
+  EXPECT_NE(error_of("--to 5 --slow").find("--slow: only with --no-ramp"), std::string::npos);
+  EXPECT_NE(error_of("--to 5 --max-velocity 9").find("--max-velocity: only with --no-ramp"), std::string::npos);
   EXPECT_NE(error_of("--to 1,1,1,1,1").find("the machine has 4 motors"), std::string::npos);
   EXPECT_NE(error_of("--to 0,0").find("line: no axis moves"), std::string::npos);
   EXPECT_EQ(command.run("line --to 1,1,1,1,1 --no-ramp").status, 0);

@@ -72,7 +72,7 @@ TEST_F(CutLink, ThatFallsSilentEndsTheRunBehindTheWatchdogAndSaysWhatToDo) {
                               "of 1 s at the latest"));
   EXPECT_THAT(said, HasSubstr("`trammel recover` says where it stands"));
   EXPECT_THAT(said, HasSubstr("`timeout=MS` in the URL"));
-  EXPECT_THAT(said, HasSubstr("with the same arguments and --resume goes on"));
+  EXPECT_THAT(said, HasSubstr("with the same arguments and --resume continues"));
   EXPECT_THAT(command_.run("recover --card " + server_.url()).out, HasSubstr("WATCHDOG"));
 }
 

@@ -24,7 +24,7 @@ class Drives : public testing::Test {
 TEST_F(Drives, AreEnabledByOrderAndStaySo) {
   const Server server(command_, "--fast");
   EXPECT_EQ(state(server),
-            "drives   disabled (of no axis: motion waits for none)\norder    off: motion enables them\n");
+            "drives   disabled (of no axis; motion does not wait for drives)\norder    off: motion enables them\n");
   EXPECT_EQ(order(server, std::string("on") + kManual).out, "drives   enabled\norder    on: they stay enabled\n");
   const Outcome moved = command_.run(std::string("jog X1 --card ") + server.moving() + kManual);
   EXPECT_EQ(moved.status, 0) << moved.err;
@@ -37,7 +37,7 @@ TEST_F(Drives, AreRefusedWhatTheyCannotDo) {
   const Server server(command_, "--fast");
   const Outcome none = order(server, "on");
   EXPECT_EQ(none.status, 2);
-  EXPECT_NE(none.err.find("name an output `enable` in [outputs]"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("Name an output `enable` in [outputs]"), std::string::npos) << none.err;
   EXPECT_EQ(order(server, "perhaps").status, 2);
   EXPECT_EQ(command_.run("drives on").status, 2) << "no card";
   EXPECT_EQ(command_.run("drives on --card '" + server.url() + "'" + kPlain).status, 2) << "no token";

@@ -50,14 +50,14 @@ TEST_F(HomeCommand, RefusesBeforeAnythingMoves) {
   EXPECT_EQ(without.status, 2);
   EXPECT_THAT(without.err, HasSubstr("no axis of the machine file has a [homing]"));
   EXPECT_THAT(command_.run("home").err, HasSubstr("home: needs --card"));
-  EXPECT_THAT(on_card("position").out, HasSubstr("no place since the card's reset"));
+  EXPECT_THAT(on_card("position").out, HasSubstr("no position since the card's reset"));
 }
 
 TEST_F(HomeCommand, ASwitchThatDoesNotComeIsNamed) {
   const Outcome home = on_card("home X --set homing.x.search_distance=20");
   EXPECT_EQ(home.status, 1);
   EXPECT_THAT(home.err, HasSubstr("X: its home switch at input 0 did not become active within 20 mm at 40 mm/s"));
-  EXPECT_THAT(on_card("position").out, HasSubstr("no place since the card's reset"));
+  EXPECT_THAT(on_card("position").out, HasSubstr("no position since the card's reset"));
 }
 
 }  // namespace

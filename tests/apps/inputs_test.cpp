@@ -41,7 +41,8 @@ TEST_F(ServedSwitches, AProgramStopsAtItsLimit) {
   EXPECT_NE(stopped.status, 0);
   const std::string place = " in command 1 of the geometry queue, " + ticks_left() + " ticks before its end (exact)";
   const std::string cure =
-      "X has stepped into its limit at the plus end: move it towards minus, as `trammel jog X-5 --clear-faults "
+      "X has stepped into its limit at the plus end: move it towards minus, for example with `trammel jog X-5 "
+      "--clear-faults "
       "--trust-position` (5 mm); only steps further into it are barred";
   EXPECT_THAT(stopped.err, AllOf(HasSubstr("LIMIT (axis 0 plus)"), HasSubstr("note: the card stands at X 8"),
                                  HasSubstr(" Y 0.0000 Z 0.0000 E 0.0000 mm (pulses 7"), HasSubstr("," + place),
@@ -72,8 +73,10 @@ TEST_F(ServedSwitches, AfterARampThePlaceIsThere) {
 TEST_F(ServedSwitches, WithABeltTheWayAwayNeedsAnOverride) {
   const std::string belt = " --set kinematics.name=\"'corexy'\" --trust-position";
   EXPECT_NE(run("G1 X300 F1800\n", belt).status, 0);
-  EXPECT_THAT(command_.run("recover" + belt.substr(0, belt.rfind(" --")) + " --card " + server_.url()).out,
-              HasSubstr("as `trammel jog X-5 --clear-faults --trust-position --override-limits` (5 mm); without"));
+  EXPECT_THAT(
+      command_.run("recover" + belt.substr(0, belt.rfind(" --")) + " --card " + server_.url()).out,
+      HasSubstr(
+          "for example with `trammel jog X-5 --clear-faults --trust-position --override-limits` (5 mm); without"));
   const auto jog = [&](const std::string& words) {
     return command_.run("jog " + words + " --clear-faults" + belt + kInputs + " --card " + server_.moving());
   };
@@ -94,7 +97,7 @@ TEST_F(ServedSwitches, ADriveThatReportsAFaultIsNamed) {
   const Outcome stopped =
       command_.run("run " + command_.write("p.ngc", "G1 X300 F1800\n") + drive + " --card " + server_.moving());
   EXPECT_THAT(stopped.err, AllOf(HasSubstr("DRIVE_FAULT (axis 1)"),
-                                 HasSubstr("the drive of Y reports a fault: end it at the drive")));
+                                 HasSubstr("the drive of Y reports a fault: clear it at the drive")));
 }
 
 class ServedDrives : public ::testing::Test {
@@ -110,7 +113,7 @@ class ServedDrives : public ::testing::Test {
 
 // At 1 MHz, in real time: the drives take 2.6 s.
 TEST_F(ServedDrives, AreShownAsTheyWaitAndAreEnabled) {
-  EXPECT_EQ(drives(), "drives   disabled (of no axis: motion waits for none)");
+  EXPECT_EQ(drives(), "drives   disabled (of no axis; motion does not wait for drives)");
   Running client(command_,
                  "run " + command_.write("p.ngc", "G1 X1 F6000\n") +
                      " --set outputs.enable=2 --set outputs.enable_delay_ms=2600 --card " + server_.moving(),

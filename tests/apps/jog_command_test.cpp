@@ -53,7 +53,8 @@ TEST_F(JogCommand, EndsAtASoftLimitAndSaysSo) {
   ASSERT_EQ(command_.run("zero X Y Z E --homed --card " + server_.moving()).status, 0);
   const Outcome outcome = jog("X10 --set axis.x.max=4");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("note: X went by 4.0000 of 10.0000: a soft limit (min or max) is in the way"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("note: X moved by 4.0000 instead of 10.0000, because a soft limit (min or max) is in the way"));
   const Outcome at_the_limit = jog("X10 --set axis.x.max=4");
   EXPECT_EQ(at_the_limit.status, 2);
   EXPECT_EQ(axis(0), 320);
@@ -83,11 +84,11 @@ TEST_F(JogCommand, RefusesBeforeAnythingMoves) {
   EXPECT_THAT(refusal("X10 Y"), HasSubstr("jog: Y: the distance must be a number"));
   EXPECT_THAT(refusal("X1e999"), HasSubstr("jog: X1e999: the distance must be a number"));
   EXPECT_THAT(refusal("X0x10"), HasSubstr("jog: X0x10: the distance must be a number"));
-  EXPECT_THAT(refusal("X0 X5"), HasSubstr("jog: X5: the axis stands twice"));
-  EXPECT_THAT(refusal("X1 x2"), HasSubstr("jog: x2: the axis stands twice"));
+  EXPECT_THAT(refusal("X0 X5"), HasSubstr("jog: X5: the axis is given twice"));
+  EXPECT_THAT(refusal("X1 x2"), HasSubstr("jog: x2: the axis is given twice"));
   EXPECT_THAT(refusal("X0"), HasSubstr("jog"));
   EXPECT_THAT(refusal(""), HasSubstr("jog: name axes and distances, such as X10 Y-0.5; keys need a terminal"));
-  EXPECT_THAT(command_.run("jog X1").err, HasSubstr("jog: name the card by --card"));
+  EXPECT_THAT(command_.run("jog X1").err, HasSubstr("jog: needs --card"));
   EXPECT_EQ(axis(0), 0);
 }
 

@@ -24,33 +24,34 @@ TEST(MachineCheck, TellsEachWay) {
       machine_of("x_limit_plus = 0\nfilter = 2\n", "overtravel = 25\nmin = 0\nmax = 300\n", "endless = true\n");
   EXPECT_EQ(app::stop_text(machine),
             "T = 0.4 s from full speed to rest, for all axes\n"
-            "axis X: 100 mm/s, from there to rest v * T/2 = 20 mm\n"
-            "  limit switch: 0.2 mm while its filter lasts + 20 mm of ramp = 20.2 mm; overtravel 25 mm: a ramp fits\n"
+            "axis X: stops from 100 mm/s in v * T/2 = 20 mm\n"
+            "  limit switch: 0.2 mm in its filter time + 20 mm of ramp = 20.2 mm; overtravel 25 mm: a ramp fits\n"
             "  soft limits: 0 to 300 mm; jogs brake 20 mm before them, the card's own guard stops up to 20 mm behind "
             "them\n"
-            "axis A: 100 degrees/s, from there to rest v * T/2 = 20 degrees\n"
-            "  soft limits: none, it is endless\n"
-            "limit switches: on a ramp\n");
+            "axis A: stops from 100 degrees/s in v * T/2 = 20 degrees\n"
+            "  soft limits: none, the axis is endless\n"
+            "limit switches: stop on a ramp\n");
 }
 
 TEST(MachineCheck, TellsOfSoftLimitsThatStopAtOnce) {
   EXPECT_THAT(
       app::stop_text(machine_of("on_soft_limit = \"immediate\"\n", "min = 0\nmax = 300\n", "endless = true\n")),
-      HasSubstr("\n  soft limits: 0 to 300 mm; jogs brake 20 mm before them, the card's own guard stops at once at "
-                "them, by inputs.on_soft_limit\n"));
+      HasSubstr("\n  soft limits: 0 to 300 mm; jogs brake 20 mm before them, the card's own guard stops immediately "
+                "at them, as inputs.on_soft_limit says\n"));
 }
 
 TEST(MachineCheck, NamesTheAxisThatDoesNotFit) {
   const auto machine = machine_of("x_limit_plus = 0\na_limit_minus = 1\nfilter = 2\n", "overtravel = 25\n",
                                   "max = 90\novertravel = 12\n");
   const std::string text = app::stop_text(machine);
-  EXPECT_THAT(text, HasSubstr("overtravel 12 degrees: a ramp does not fit, 8.2 degrees are missing\n"));
+  EXPECT_THAT(text, HasSubstr("overtravel 12 degrees: a ramp does not fit, it needs 8.2 degrees more\n"));
   EXPECT_THAT(text, HasSubstr("soft limits: none to 90 degrees"));
-  EXPECT_THAT(text,
-              HasSubstr("limit switches: at once, all of them, since a ramp does not fit behind those of axis A: "));
+  EXPECT_THAT(
+      text,
+      HasSubstr("limit switches: immediate stop at all of them, because a ramp does not fit behind those of axis A. "));
   EXPECT_THAT(app::stop_text(machine_of("", "", "endless = true\n")), HasSubstr("\nlimit switches: none\n"));
   EXPECT_THAT(app::stop_text(machine_of("x_limit = 0\non_limit = \"immediate\"\n", "", "endless = true\n")),
-              HasSubstr("\nlimit switches: at once, by inputs.on_limit\n"));
+              HasSubstr("\nlimit switches: immediate stop, as inputs.on_limit says\n"));
 }
 
 }  // namespace

@@ -358,24 +358,24 @@ TEST_F(Operator, StreamRunsWhatIsReadAndEndsAtRestWhereItIsWrong) {
 TEST_F(Operator, BadValuesAreRefusedWithTheirUnits) {
   const std::string program = command_.write("a.ngc", "G1 X1 F600\n");
   const std::map<std::string, std::string> wrong{
-      {"--override 101", "101 is no override from 0 to 100 percent (max_override"},
-      {"--override fast", "fast is no override from 0 to 100 percent"},
-      {"--override=-1", "-1 is no override from 0 to 100 percent"},
-      {"--override 0", "0 percent to the end"},
-      {"--override-at 1:50 --override-at 2:0", "0 percent to the end"},
+      {"--override 101", "101 is not an override from 0 to 100 percent (max_override"},
+      {"--override fast", "fast is not an override from 0 to 100 percent"},
+      {"--override=-1", "-1 is not an override from 0 to 100 percent"},
+      {"--override 0", "0 percent at the end"},
+      {"--override-at 1:50 --override-at 2:0", "0 percent at the end"},
       {"--override-at 1", "1 must be SECONDS:PERCENT"},
-      {"--override-at x:5", "x is no time from 0 to 1e+09 seconds of card time"},
-      {"--override-at 1:500", "500 is no override from 0 to 100 percent"},
+      {"--override-at x:5", "x is not a time from 0 to 1e+09 seconds of card time"},
+      {"--override-at 1:500", "500 is not an override from 0 to 100 percent"},
       {"--hold-at 1", "1 must be SECONDS:DURATION, both in seconds"},
-      {"--hold-at 1:-2", "-2 is no duration from 0 to 1e+09 seconds of card time"},
+      {"--hold-at 1:-2", "-2 is not a duration from 0 to 1e+09 seconds of card time"},
       {"--hold-at 1:2 --hold-at 2:1", "begins before the one at 1 s is over"},
       {"--feed-scale 0", "must be a factor from 0.001 to 1000, not 0"},
       {"--limit-bus 0.5", "must be bytes a second from 1 to 1000000000, not 0.5"},
       {"--from-line 0", "must be a whole number, 1 to 4294967295, not 0"},
       {"--from-line 2", "a.ngc:1: the program ends before line 2"},
-      {"--check --steps -", "--steps: nothing runs with --check"},
-      {"--stream --check", "--stream: nothing runs with --check"},
-      {"--stream --plot x.svg", "--plot: needs the whole program first"},
+      {"--check --steps -", "--steps: not with --check, which runs nothing"},
+      {"--stream --check", "--stream: not with --check, which runs nothing"},
+      {"--stream --plot x.svg", "--plot: needs the whole program before the run"},
   };
   for (const auto& [options, message] : wrong) {
     const Outcome outcome = command_.run("run " + program + " " + options);

@@ -158,14 +158,14 @@ TEST_F(PathIo, InputsAreScripted) {
   for (const auto& [text, message] : std::map<std::string, std::string>{
            {"1:2", "SECONDS:INPUT:LEVEL"},
            {"0.5", "SECONDS:INPUT:LEVEL"},
-           {"x:1:1", "x is no time"},
-           {"-1:1:1", "-1 is no time"},
-           {"1:16:1", "16 is no input of the simulated card, 0 to 15"},
+           {"x:1:1", "x is not a time"},
+           {"-1:1:1", "-1 is not a time"},
+           {"1:16:1", "16 is not an input of the simulated card (0 to 15"},
            {"1:-1:1", "-1 is no input"},
            {"1:0.5:1", "0.5 is no input"},
-           {"1:1:2", "2 is no level, 0 or 1"},
-           {"1:1:", " is no level"},
-           {"1:1:1:1", "1:1 is no level"},
+           {"1:1:2", "2 is not a level (0 or 1)"},
+           {"1:1:", " is not a level"},
+           {"1:1:1:1", "1:1 is not a level"},
        }) {
     const Outcome outcome = command_.run("run " + program + " --engine model --input-at=" + text);
     EXPECT_EQ(outcome.status, 2) << text;
@@ -200,12 +200,12 @@ TEST_F(PathIo, RapidsHaveAnOverrideOfTheirOwn) {
     EXPECT_EQ(outcome.status, 2) << options;
     EXPECT_NE(outcome.err.find(message), std::string::npos) << options << ": " << outcome.err;
   };
-  refused("--rapid-override 101", "--rapid-override: 101 is no override from 0 to 100 percent");
-  refused("--rapid-override=-1", "-1 is no override");
-  refused("--rapid-override fast", "fast is no override");
-  refused("--rapid-override nan", "nan is no override");
-  refused("--rapid-override 0", "a program with 1 rapids would never end");
-  refused("--rapid-override 0 --stream", "needs the whole program first");
+  refused("--rapid-override 101", "--rapid-override: 101 is not an override from 0 to 100 percent");
+  refused("--rapid-override=-1", "-1 is not an override");
+  refused("--rapid-override fast", "fast is not an override");
+  refused("--rapid-override nan", "nan is not an override");
+  refused("--rapid-override 0", "would never finish, because it has 1 rapids");
+  refused("--rapid-override 0 --stream", "needs the whole program before the run");
   EXPECT_EQ(
       command_.run("run " + command_.write("b.ngc", "G1 X1 F600\n") + " --engine model --rapid-override 0").status, 0);
 }

@@ -64,7 +64,7 @@ class PlaceOfACard : public ::testing::Test {
 };
 
 TEST_F(PlaceOfACard, OfTwoRunsTheSecondBeginsWhereTheFirstEnded) {
-  EXPECT_THAT(position(), HasSubstr("no place since the card's reset"));
+  EXPECT_THAT(position(), HasSubstr("no position since the card's reset"));
   const Outcome first = run("G91 G1 X10 F6000\n");
   EXPECT_EQ(first.status, 0);
   EXPECT_THAT(first.err, HasSubstr(kFirst));
@@ -90,7 +90,7 @@ TEST_F(PlaceOfACard, ALineSetsItAndARunTakesItOver) {
 // A card that something else has moved since its reset.
 TEST_F(PlaceOfACard, TheFirstRunSetsZeroWhereTheCardStands) {
   cut_off();
-  EXPECT_THAT(position(), HasSubstr("no place since the card's reset"));
+  EXPECT_THAT(position(), HasSubstr("no position since the card's reset"));
   const Outcome first = run("G1 X1 F6000\n");
   EXPECT_THAT(first.err, AllOf(HasSubstr(kFirst), Not(HasSubstr("stands at"))));
   EXPECT_THAT(first.out, HasSubstr("X: ends at pulse 80"));
@@ -118,7 +118,7 @@ TEST_F(PlaceOfACard, ZeroOfABeltMovesNoOtherAxis) {
 TEST_F(PlaceOfACard, APlaceThatWasLostIsRefused) {
   ASSERT_EQ(run("G1 X1 F6000\n").status, 0);
   cut_off();
-  EXPECT_THAT(recover(), HasSubstr("path     at a place of its path that is not known"));
+  EXPECT_THAT(recover(), HasSubstr("path     at an unknown place of its path"));
   expect_refused(run("G1 Y1 F600\n"), kLost);
   expect_refused(command_.run("line --to 10,0" + moving()), "the place of axis 0 was lost");
   EXPECT_EQ(command_.run("line --to 0,10" + moving()).status, 0) << "of an axis that stood";
@@ -149,7 +149,7 @@ TEST_F(PlaceOfACard, WhoKnowsBetterTrustsIt) {
   cut_off();
   EXPECT_EQ(run("G1 X1 F600\n", " --trust-position").status, 0);
   EXPECT_EQ(run("G1 X1 F600\n").status, 0) << "it is valid again";
-  expect_refused(command_.run("line --to 1 --trust-position"), "give it with --card");
+  expect_refused(command_.run("line --to 1 --trust-position"), "needs --card");
 }
 
 TEST_F(PlaceOfACard, OtherScalesAreRefused) {
@@ -170,7 +170,7 @@ TEST_F(PlaceOfACard, RequireHomeRefusesAxesThatAreNotHomed) {
   const std::string home = " --set card.require_home=true";
   expect_refused(run("G1 X1 F600\n", home), "not homed: X Y Z E, and the machine file has require_home");
   expect_refused(command_.run("line --to 10,0" + home + moving()), "not homed: axis 0");
-  EXPECT_THAT(position(), HasSubstr("no place since")) << "nothing was written";
+  EXPECT_THAT(position(), HasSubstr("no position since")) << "nothing was written";
   ASSERT_EQ(zero("X Y Z --homed").status, 0);
   expect_refused(run("G1 X1 F600\n", home), "not homed: E,");
   EXPECT_EQ(command_.run("line --to 10,0" + home + moving()).status, 0);

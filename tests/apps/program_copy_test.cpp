@@ -50,7 +50,7 @@ TEST(ProgramCopy, LineWithoutEndIsRefused) {
   expect_program_refused(run_program(command, "- </dev/zero"), "standard input:1: a line of more than 65535 bytes");
   expect_program_refused(run_program(command, "- < <(echo G1 X1 F600; cat /dev/zero)"), "standard input:2: a line of");
   expect_program_refused(run_program(command, command.write("ok.ngc", "G1 X1 F600\n") + " --parameters /dev/zero"),
-                         "/dev/zero:1: not a parameter");
+                         "/dev/zero:1: must be the number of a parameter");
 }
 
 // Killed in the middle of the copy: more than a pipe holds has been read of the FIFO by then.

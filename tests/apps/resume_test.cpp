@@ -37,7 +37,7 @@ TEST_F(ResumedRun, OfAHostThatIsKilledAgainAndAgainMakesTheUndisturbedPath) {
   }
   const Outcome last = run("--resume");
   EXPECT_EQ(last.status, 0) << last.err;
-  EXPECT_THAT(last.err, HasSubstr("the run goes on at line "));
+  EXPECT_THAT(last.err, HasSubstr("the run begins at line "));
   EXPECT_EQ(path_of(server_.end()), wanted) << server_.errors();
 }
 
@@ -46,7 +46,7 @@ TEST_F(ResumedRun, OfAHostThatWasStoppedInOrder) {
   end(client, SIGINT, 300);
   EXPECT_THAT(contents(command_.path(said_in())),
               AllOf(HasSubstr("note: the run was stopped in command "), HasSubstr(" ticks before its end (exact); "),
-                    HasSubstr("--resume goes on with the run")));
+                    HasSubstr("--resume continues the run")));
   EXPECT_THAT(command_.run("recover --card " + server_.url()).out, HasSubstr("p.ngc --resume`"));
   const Outcome resumed = run("--resume");
   EXPECT_EQ(resumed.status, 0) << resumed.err;
@@ -74,7 +74,7 @@ TEST_F(ResumedRun, AConnectionMadeAnewInTheSilenceDoesNotTakeTheHoldBack) {
   const std::int32_t stands = card.read_snapshot().position[0];
   cable.cut();
   ASSERT_TRUE(eventually([&] {
-    return contents(command_.path("resumed.err")).find("is there again") != std::string::npos;
+    return contents(command_.path("resumed.err")).find("was lost and made again") != std::string::npos;
   })) << server_.errors();
   unsigned looks = 0;
   for (;; ++looks) {
@@ -96,8 +96,8 @@ TEST_F(ResumedRun, GoesBackFirstWhereTheMachineWasMoved) {
   ASSERT_EQ(command_.run("jog X1 Y-1 --card " + server_.moving()).status, 0);
   const std::string moved = position();
   const Outcome asked = run("--resume");
-  expect_refused(asked, "nothing has moved: give --yes");
-  EXPECT_THAT(asked.err, HasSubstr("it goes there first, on a straight line at 37.5 mm/s"));
+  expect_refused(asked, "Give --yes to allow this move");
+  EXPECT_THAT(asked.err, HasSubstr("the machine moves there first, on a straight line at 37.5 mm/s"));
   EXPECT_EQ(position(), moved);
   const Outcome resumed = run("--resume --yes");
   EXPECT_EQ(resumed.status, 0) << resumed.err;
@@ -125,34 +125,34 @@ TEST_F(ResumedRun, AsksOnATerminal) {
 }
 
 TEST_F(ResumedRun, IsRefusedByNameWhereItIsNotTheRunThatWasInterrupted) {
-  expect_refused(run("--resume"), "no run on this card was begun");
+  expect_refused(run("--resume"), "no record of a run on this card was found");
   interrupt();
   const std::string stands = position();
   expect_refused(run("--resume --set axis.x.max_velocity=100"), "the machine file or --set has changed");
   expect_refused(run("--resume --arcs chords"), "--arcs was 'generator', and is 'chords' now");
   expect_refused(run("--resume --single-block"), "--single-block was 'not given', and is 'given' now");
-  expect_refused(run("--resume --stream"), "needs the whole program first");
-  expect_refused(run("--resume --from-line 3"), "not at --from-line");
+  expect_refused(run("--resume --stream"), "needs the whole program before the run");
+  expect_refused(run("--resume --from-line 3"), "not with --from-line");
   command_.write("p.ngc", program() + "(more)\n");
-  expect_refused(run("--resume"), "p.ngc has other lines than");
+  expect_refused(run("--resume"), "p.ngc differ from those that");
   command_.write("p.ngc", program());
   EXPECT_EQ(position(), stands) << "nothing has moved";
   ASSERT_EQ(command_.run("jog X1 --card " + server_.moving()).status, 0);
   ASSERT_EQ(command_.run("zero X --card " + server_.moving()).status, 0);
   expect_refused(run("--resume"), "machine zero was set anew");
-  expect_refused(command_.run("run " + program_ + " --resume"), "give it with --card");
+  expect_refused(command_.run("run " + program_ + " --resume"), "needs --card");
 }
 
 TEST_F(ResumedRun, HasNothingToGoOnWithBehindItsEnd) {
   command_.write("p.ngc", "G1 X1 F6000\n");
   ASSERT_EQ(run().status, 0);
-  expect_refused(run("--resume"), "the last run has come to its end");
+  expect_refused(run("--resume"), "the last run on this card reached its end");
 }
 
 TEST_F(ResumedRun, KeepsItsFileWhereItIsToldAndOverwritesNoOther) {
   command_.write("p.ngc", "G1 X1 F6000\n");
   const std::string other = command_.write("other.json", "{}");
-  expect_refused(run("--resume-file " + other), "other.json: is no file of an interrupted run");
+  expect_refused(run("--resume-file " + other), "other.json: is not the file of an interrupted run");
   EXPECT_EQ(contents(other), "{}");
   EXPECT_EQ(run("--resume-file " + command_.path("own.json")).status, 0);
   EXPECT_EQ(read_json(command_.path("own.json"))["state"], "done");
@@ -164,10 +164,10 @@ TEST_F(ResumedRun, FromALineOnWithTheSamePath) {
   const Outcome whole = run("--override 100");
   ASSERT_EQ(whole.status, 0) << whole.err;
   ASSERT_EQ(command_.run("jog X3 --card " + server_.moving()).status, 0);
-  expect_refused(run("--from-line 30"), "nothing has moved: give --yes");
+  expect_refused(run("--from-line 30"), "Give --yes to allow this move");
   const Outcome made = run("--from-line 30 --yes");
   EXPECT_EQ(made.status, 0) << made.err;
-  EXPECT_THAT(made.err, AllOf(HasSubstr("the run goes on at line 30, at X "), Not(HasSubstr("ticks into a path"))));
+  EXPECT_THAT(made.err, AllOf(HasSubstr("the run begins at line 30, at X "), Not(HasSubstr("ticks into a path"))));
   EXPECT_THAT(made.out, HasSubstr("X: ends at pulse 0"));
 }
 

@@ -44,7 +44,7 @@ class ResumedRun : public ::testing::Test {
   // Until the client has moved the card for a while; a run that goes on once it has said so.
   void let_move(int milliseconds, bool resumed) const {
     const auto moves = [&] {
-      return resumed ? contents(command_.path(said_in())).find("goes on at line") != std::string::npos
+      return resumed ? contents(command_.path(said_in())).find("the run begins at line") != std::string::npos
                      : shows("on a path");
     };
     EXPECT_TRUE(eventually(moves)) << contents(command_.path(said_in()));

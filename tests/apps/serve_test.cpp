@@ -113,7 +113,7 @@ TEST(Serve, AClientIsKilled) {
   ASSERT_TRUE(eventually([&] { return has(command.run("monitor --looks 1 --card " + server.url()).out, "held"); }));
   const Outcome next = command.run("line --to 10,10 --card " + server.moving());
   EXPECT_EQ(next.status, 0) << next.err;
-  EXPECT_TRUE(has(next.err, "what was left is dropped")) << next.err;
+  EXPECT_TRUE(has(next.err, "the rest of that motion is dropped")) << next.err;
 }
 
 // Ends a client by a signal while it moves the card, and gives back the number behind `words` in what it says then. A
@@ -192,7 +192,7 @@ TEST(Serve, TheNextRunBeginsWhereTheMachineStands) {
                   "the machine stands at X 10.0000 Y 0.0000 Z 0.0000 E 0.0000 mm, but the run begins at"
                   " X 12.0000 Y 3.0000"))
       << displaced.err;
-  EXPECT_TRUE(has(displaced.err, "nothing has moved: give --yes")) << displaced.err;
+  EXPECT_TRUE(has(displaced.err, "Give --yes to allow this move")) << displaced.err;
   const Outcome in_place = command.run("run " + there + " --from-line 2" + at);
   EXPECT_EQ(in_place.status, 0) << in_place.err;
   EXPECT_TRUE(has(in_place.out, "X: ends at pulse 0 (0.0000 mm)")) << in_place.out;
@@ -212,7 +212,7 @@ TEST(Serve, ACableThatIsCutThreeTimes) {
       command.run(run + " --card '" + cable.url() + "?token=secret' --json " + command.path("there.json"));
   ASSERT_EQ(outcome.status, 0) << outcome.err << server.errors();
   EXPECT_EQ(cable.cuts(), 3U);
-  EXPECT_TRUE(has(outcome.err, "the motion goes on")) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "the motion continues")) << outcome.err;
   const nlohmann::json here = read_json(command.path("here.json"));
   const nlohmann::json there = read_json(command.path("there.json"));
   EXPECT_EQ(there["final_position"], here["final_position"]);
@@ -263,12 +263,12 @@ TEST(CardOutside, BadInput) {
   expect_refused(command, run + there + " --check", "--check");
   expect_refused(command, "line --to 1,1 --plot x --card " + there, "--plot");
   expect_refused(command, "info --trace x.fst --card " + there, "--trace");
-  expect_refused(command, "line --to 1,1 --clear-faults", "--clear-faults: a simulated card has none");
+  expect_refused(command, "line --to 1,1 --clear-faults", "--clear-faults: needs --card");
   expect_refused(command, "serve --token 'a b'", "--token");
   expect_refused(command, "serve --port 70000", "--port");
   expect_refused(command, "serve --listen no-such-host.invalid", "no such address");
   expect_refused(command, "serve --listen ''", "no such address");
-  expect_refused(command, "serve --listen 127.0.0.1:4000", "--port takes the port");
+  expect_refused(command, "serve --listen 127.0.0.1:4000", "Give the port with --port");
   expect_refused(command, "serve --pty --port 5", "--pty");
   expect_refused(command, "monitor --interval 0", "--interval");
 }

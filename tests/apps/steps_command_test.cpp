@@ -94,7 +94,7 @@ TEST_F(StepsCommand, RefusesBadInput) {
   EXPECT_THAT(refusal({"--method", "steer", "--circle", "-5"}), HasSubstr("negative"));
   EXPECT_THAT(refusal({"--method", "steer", "--circle", "5.5"}), HasSubstr("whole numbers"));
   EXPECT_THAT(refusal({"--method", "steer", "--circle", ""}), HasSubstr("whole numbers"));
-  EXPECT_THAT(refusal({"--method", "steer", "--line", "0,0,1"}), HasSubstr("4 are needed"));
+  EXPECT_THAT(refusal({"--method", "steer", "--line", "0,0,1"}), HasSubstr("4 needed"));
   EXPECT_THAT(refusal({"--method", "steer", "--line", "0,0,1,"}), HasSubstr("whole numbers"));
   EXPECT_THAT(refusal({"--method", "steer", "--line", "0,0,1,99999999999999999999"}), HasSubstr("64 bits"));
   EXPECT_THAT(refusal({"--method", "steer", "--arc", "5,0,0,0,0,7"}), HasSubstr("not on one circle"));

@@ -168,7 +168,7 @@ TEST(Notes, WordsWithoutEffectByTheReason) {
                   " --engine model");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("which a simulation does not make: M0 (2) M1 (1)\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("no lines are joined to fewer (naive cam): G64 Q (1)\n"), std::string::npos)
+  EXPECT_NE(outcome.out.find("lines are not joined (naive CAM detector): G64 Q (1)\n"), std::string::npos)
       << outcome.out;
   EXPECT_NE(outcome.out.find("[outputs] of the machine file: M3 (1) M5 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("no output for it in [spindle] of the machine file: S (1)\n"), std::string::npos)
@@ -184,7 +184,7 @@ TEST(Notes, BlendsAndCornersThatAreKept) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("blends (G64 P): 2, at most 0.1 mm from the programmed path\n"), std::string::npos)
         << outcome.out;
-    EXPECT_NE(outcome.out.find("corners kept under G64 P: 1 (reversals)\n"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("corners not rounded by G64 P: 1 (reversals)\n"), std::string::npos) << outcome.out;
     EXPECT_NE(contents(command.path("a.json")).find("\"blends\": {\n    \"count\": 2,"), std::string::npos);
   }
   // Every line ends in a stop.
@@ -210,7 +210,7 @@ TEST(Words, LinesOfFurtherWordsAreLeftOut) {
   for (const char* word : {"900", "M", "M1.25", "M99999", "M-1", "Mx", "X1"}) {
     const Outcome bad = command.run("run " + program + " --check --accept " + word);
     EXPECT_EQ(bad.status, 2) << word;
-    EXPECT_NE(bad.err.find("is no G or M word such as M900 or M862.3"), std::string::npos) << bad.err;
+    EXPECT_NE(bad.err.find("is not a G or M word such as M900 or M862.3"), std::string::npos) << bad.err;
   }
   for (const char* word : {"G1", "G20", "G17", "G92", "G91", "M83", "M2", "G68", "M98"}) {
     const Outcome bad = command.run("run " + program + " --check --accept " + word);
@@ -251,7 +251,7 @@ TEST(Words, WhatAPrinterWouldDoOtherwiseIsTold) {
   EXPECT_NE(outcome.out.find("nothing was searched: G28 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("which printers' firmware takes as milliseconds: G4 P (1)\n"), std::string::npos)
       << outcome.out;
-  EXPECT_NE(outcome.err.find("warning: " + program + ": G4 P is in seconds here (1 time);"), std::string::npos)
+  EXPECT_NE(outcome.err.find("warning: " + program + ": G4 P is taken as seconds (1 time)."), std::string::npos)
       << outcome.err;
 }
 
@@ -279,7 +279,8 @@ TEST(Parameters, PersistWhereAFileIsNamed) {
     command.write("machine.var", std::string("1 2\n\n") + line + "\n");
     const Outcome bad = command.run("run " + second + with);
     EXPECT_EQ(bad.status, 2) << line;
-    EXPECT_NE(bad.err.find("machine.var:3: not a parameter's number (1 to 5602) and its value"), std::string::npos)
+    EXPECT_NE(bad.err.find("machine.var:3: must be the number of a parameter (1 to 5602) and its value"),
+              std::string::npos)
         << bad.err;
   }
   EXPECT_EQ(command.run("run " + second + " --engine model --parameters -").status, 2);
@@ -337,7 +338,7 @@ TEST(Axes, EveryNumberIsBuiltAndTracesSayWhatServes) {
   }
   const Outcome refused = command.run("info --axes 3 --trace " + command.path("x.fst"));
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("4 and of 8"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("4 or 8 axes"), std::string::npos) << refused.err;
 }
 
 // Start and end of an FST file, in steps of half a clock: 64 bits each behind its first block's kind and length.

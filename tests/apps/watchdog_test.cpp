@@ -38,7 +38,7 @@ class WatchedRun : public ::testing::Test {
     EXPECT_THAT(refused.err, HasSubstr("clear the fault with --clear-faults"));
     const Outcome cleared = move(" --clear-faults");
     EXPECT_EQ(cleared.status, 0) << cleared.err;
-    EXPECT_THAT(cleared.err, HasSubstr(std::string("cleared the card's fault of before: ") + kSilent));
+    EXPECT_THAT(cleared.err, HasSubstr(std::string("cleared the card's earlier fault: ") + kSilent));
     const std::string after = registers();
     EXPECT_THAT(after, HasSubstr("FAULT                0x00000000"));
     EXPECT_THAT(after, HasSubstr("WATCHDOG             0x00000000")) << "or an idle card has a fault";
