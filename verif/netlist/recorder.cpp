@@ -53,6 +53,8 @@ void Recorder::for_each_port(Port&& port) {
   port("idle_level_i", '<', dut_->idle_level_i, 2 * kAxes);
   port("input_i", '<', dut_->input_i, kPins);
   port("output_idle_i", '<', dut_->output_idle_i, kPins);
+  port("emergency_stop_level_i", '<', dut_->emergency_stop_level_i, 1);
+  port("emergency_stop_i", '<', dut_->emergency_stop_i, 1);
   port("awvalid_i", '<', dut_->awvalid_i, 1);
   port("awaddr_i", '<', dut_->awaddr_i, 12);
   port("wvalid_i", '<', dut_->wvalid_i, 1);
