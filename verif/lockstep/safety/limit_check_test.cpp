@@ -162,7 +162,22 @@ void random_courses() {
   EXPECT_GT(bench.others(), length / 1'000);
 }
 
+// Nothing of a reset's clock comes out behind it.
+void reset_beside_a_cause() {
+  Bench bench(0);
+  bench.set(reg::kStopCauses, field::kStopCausesProbe | field::kStopCausesToolSetter);
+  Bench::Inputs in;
+  in.runs = true;
+  bench.clock(in);
+  in.roles.probe = in.roles.tool_setter = true;
+  in.roles.drive_fault = in.roles.limit_plus = in.step = 1;
+  bench.reset(in);
+  bench.clock(in);
+  EXPECT_EQ(bench.others(), 0U);
+}
+
 TEST(LimitCheck, EveryCourse) { EXPECT_EQ(judge(every_course), ""); }
+TEST(LimitCheck, ResetBesideACause) { EXPECT_EQ(judge(reset_beside_a_cause), ""); }
 TEST(LimitCheck, RandomCourses) { EXPECT_EQ(judge(random_courses), ""); }
 
 }  // namespace
