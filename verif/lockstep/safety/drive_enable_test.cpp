@@ -178,7 +178,7 @@ void random_courses() {
                                  : address == reg::kEnableAxes  ? (dice.chance(4) ? 0 : dice.draw() & 0xFF)
                                  : dice.chance(40)              ? dice.draw() & 0xFFFF
                                                                 : dice.below(4);
-      in.setting = {true, address, data};
+      in.setting = {!dice.chance(4), address, data};
     }
     if (dice.chance(2000))
       bench.reset(in);
