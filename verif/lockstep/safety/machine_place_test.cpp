@@ -154,7 +154,20 @@ void random_courses() {
   EXPECT_GT(bench.kept(), length / 400);
 }
 
+// Nothing of a reset's clock counts behind it.
+void reset_beside_an_event() {
+  Bench bench(0);
+  Bench::Inputs in;
+  in.runs = in.cut = true;
+  in.step = in.drives = in.disabled = kAllAxes;
+  bench.reset(in);
+  bench.set(reg::kSetPlace, place_of(kAllAxes, 3));
+  bench.clock({});
+  EXPECT_EQ(bench.losses(), 0U);
+}
+
 TEST(MachinePlace, EveryCourse) { EXPECT_EQ(judge(every_course), ""); }
+TEST(MachinePlace, ResetBesideAnEvent) { EXPECT_EQ(judge(reset_beside_an_event), ""); }
 TEST(MachinePlace, RandomCourses) { EXPECT_EQ(judge(random_courses), ""); }
 
 }  // namespace
