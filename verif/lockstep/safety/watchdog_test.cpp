@@ -10,6 +10,8 @@
 namespace trammel::lockstep {
 namespace {
 
+constexpr std::uint64_t kComparedSignals = 2;
+
 class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("watchdog", seed) { reset({}); }
@@ -45,6 +47,7 @@ class Bench {
   void compare() {
     check_.next_cycle();
     check_.compare("expired_o", dut_->expired_o, model_.expired());
+    check_.compare("running_o", dut_->running_o, model_.running());
   }
 
   Simulated<Vdut> dut_;
@@ -77,7 +80,7 @@ void around_the_end() {
   bench.clock(time_of(0));
   bench.run(2 * model::Watchdog::kUnitClocks);
   EXPECT_EQ(bench.expiries(), 7U);
-  EXPECT_EQ(bench.check().comparisons(), bench.check().cycles());
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * bench.check().cycles());
 }
 
 void random_writes() {
@@ -95,7 +98,7 @@ void random_writes() {
     else
       bench.clock();
   }
-  EXPECT_EQ(bench.check().comparisons(), length + 1);
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * (length + 1));
   EXPECT_GT(bench.expiries(), length / 1'000'000);
 }
 
