@@ -104,7 +104,8 @@ class Units {
   model::Setting store(Bench& bench) {
     if (left_ == 0) {
       if (dice_.chance(6)) begin();
-      return {};
+      // What stands on the bus beside no word is not stored.
+      return {false, static_cast<std::uint32_t>(card_map::Area::Capture0) + 4 * dice_.below(64), dice_.draw()};
     }
     --left_;
     const std::uint32_t value = dice_.draw();
