@@ -26,11 +26,11 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("card_inputs", seed) { reset(); }
 
-  // Until settings may be written.
+  // Until settings may be written. Pins are active meanwhile, as early as in the reset.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
-    drive({});
+    drive({kAll, {}});
     dut_.clock();
     dut_->rst_i = 0;
     model::CardInputs fresh(kAxes, kInputs, TRAMMEL_ENGINES);
@@ -102,8 +102,10 @@ void random_pins() {
   const std::uint64_t length = scaled(300'000);
   for (std::uint64_t i = 0; i < length; ++i) {
     if (dice.chance(100)) pins ^= std::uint32_t{1} << dice.below(kInputs);
-    const bool sets = dice.chance(100);
-    bench.clock({dice.chance(40) ? dice.draw() : pins, sets ? random_setting(dice) : model::Setting{}});
+    // Words and data stand on the bus beside no setting, too.
+    model::Setting setting = dice.chance(50) ? random_setting(dice) : model::Setting{};
+    setting.set = setting.set && dice.chance(2);
+    bench.clock({dice.chance(40) ? dice.draw() : pins, setting});
     active += bench.roles() != 0 ? 1U : 0U;
     if (dice.chance(20'000)) bench.reset();
   }
