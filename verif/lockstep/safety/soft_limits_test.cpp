@@ -1,5 +1,6 @@
 // Lockstep of the soft limits: axes that go to and fro around their ends, with pulses as close as a shaper makes them,
-// ends that are moved meanwhile, and positions across the carry of 2^31 and of 2^32; every output in every cycle.
+// ends that are moved meanwhile, positions across the carry of 2^31 and of 2^32, and what a reset must end; every
+// output in every cycle.
 #include "trammel/model/soft_limits.hpp"
 
 #include <Vdut.h>
@@ -34,7 +35,10 @@ class Bench {
     dut_->rst_i = 0;
     model_ = model::SoftLimits(kAxes);
     compare();
-    for (unsigned i = 0; i < kClearing; ++i) clock({});
+    // Data stand on the bus while the ends are cleared.
+    Inputs idle;
+    idle.setting = {false, reg::soft_minus(0), 0x12345678};
+    for (unsigned i = 0; i < kClearing; ++i) clock(idle);
   }
 
   void clock(const Inputs& in) {
@@ -46,6 +50,15 @@ class Bench {
     model_.clock(in);
     compare();
     causes_ += model_.cause() ? 1U : 0U;
+  }
+
+  void set(std::uint32_t address, std::uint32_t data) {
+    Inputs in;
+    in.setting = {true, address, data};
+    clock(in);
+  }
+  void wait(unsigned clocks) {
+    for (; clocks != 0; --clocks) clock({});
   }
 
   Checker& check() { return check_; }
@@ -97,7 +110,7 @@ struct Mover {
 model::Setting random_setting(Dice& dice, const std::array<Mover, kAxes>& axes) {
   const unsigned axis = dice.below(kAxes);
   const std::uint32_t here = axes[axis].position;
-  switch (dice.below(5)) {
+  switch (dice.below(6)) {
     case 0:
       return {true, reg::kSoftLimits, dice.draw() & 0xFF};
     case 1:
@@ -106,6 +119,8 @@ model::Setting random_setting(Dice& dice, const std::array<Mover, kAxes>& axes) 
       return {true, reg::soft_plus(axis), dice.chance(20) ? here + 0x7FFFFFFF : here + dice.below(5)};
     case 3:
       return {true, dice.chance(2) ? reg::kLimitOverride : reg::mode(axis), dice.draw()};
+    case 4:  // below the axes'
+      return {true, 4 * dice.below(reg::mode(0) / 4), dice.draw()};
     default:
       return {true, reg::machine_zero(axis), dice.draw()};
   }
@@ -128,7 +143,8 @@ void random_courses() {
       if (axes[n].back) in.back |= static_cast<std::uint8_t>(1U << n);
     }
     in.clear = dice.chance(9);
-    if (dice.chance(20)) in.setting = random_setting(dice, axes);
+    if (dice.chance(15)) in.setting = random_setting(dice, axes);
+    in.setting.set = in.setting.set && !dice.chance(4);
     ++cycles;
     if (dice.chance(5'000)) {
       bench.reset(in);
@@ -147,6 +163,39 @@ void random_courses() {
   EXPECT_GT(bench.causes(), length / 100);
 }
 
+// A reset in the clock of a pulse beyond the end, at each clock of the round: nothing comes of it, and the first pulse
+// behind it, in the other direction, is judged and named as if there had been none before.
+void resets_beside_pulses() {
+  constexpr std::uint8_t kAll = (1U << kAxes) - 1;
+  constexpr unsigned kRound = 8;
+  Bench bench(0);
+  for (unsigned course = 0; course < 2 * kRound * kRound; ++course) {
+    const bool back = course % 2 != 0;
+    Bench::Inputs before;
+    before.counts = kAll;
+    before.back = back ? kAll : std::uint8_t{0};
+    Bench::Inputs behind;
+    behind.counts = kAll;
+    behind.back = back ? std::uint8_t{0} : kAll;
+    bench.set(reg::kSoftLimits, kAll);
+    for (unsigned n = 0; n < kAxes; ++n) {
+      bench.set(reg::soft_minus(n), 5);
+      bench.set(reg::soft_plus(n), ~std::uint32_t{4});
+    }
+    bench.clock(before);
+    bench.wait(kTurned + course / 2 % kRound);
+    bench.reset(before);
+    bench.set(reg::kSoftLimits, kAll);
+    bench.wait(course / 2 / kRound);
+    bench.clock(behind);
+    Bench::Inputs beyond;
+    beyond.position.fill(back ? 1 : ~std::uint32_t{0});
+    for (unsigned i = 0; i < 2 * kRound; ++i) bench.clock(beyond);
+  }
+  EXPECT_GE(bench.causes(), 4 * kRound * kRound);
+}
+
+TEST(SoftLimits, ResetsBesidePulses) { EXPECT_EQ(judge(resets_beside_pulses), ""); }
 TEST(SoftLimits, RandomCourses) { EXPECT_EQ(judge(random_courses), ""); }
 
 }  // namespace
