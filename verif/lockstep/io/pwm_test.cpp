@@ -1,4 +1,4 @@
-// Pulses on outputs beside their golden model: every pin in every clock.
+// Pulses on outputs beside their golden model: every pin in every clock, before its edge and behind it.
 #include "trammel/model/pwm.hpp"
 
 #include <Vdut.h>
@@ -19,7 +19,7 @@ namespace reg = card_map::reg;
 using Pins = std::remove_reference_t<decltype(Vdut::level_i)>;
 constexpr unsigned kOutputs = TRAMMEL_OUTPUTS;
 constexpr std::uint32_t kPresent = (1U << kOutputs) - 1;
-constexpr std::uint64_t kComparedSignals = 1;
+constexpr std::uint64_t kComparedSignals = 1;  // and one more in each clock without a reset
 
 class PwmBench {
  public:
@@ -39,6 +39,9 @@ class PwmBench {
 
   void clock() {
     drive();
+    dut_->eval();
+    compare_pins();
+    ++clocks_;
     dut_.clock();
     model_->clock(in_);
     compare();
@@ -73,6 +76,15 @@ class PwmBench {
   void wait(unsigned clocks) {
     for (unsigned i = 0; i < clocks; ++i) clock();
   }
+  // Of so many clocks those in which output 0 has its level, here not the idle one.
+  unsigned lit(unsigned clocks) {
+    unsigned on = 0;
+    for (unsigned i = 0; i < clocks; ++i) {
+      clock();
+      on += (dut_->pin_o ^ idle_) & 1U;
+    }
+    return on;
+  }
 
   void random_clock() {
     if (dice_.chance(pace_)) act();
@@ -88,7 +100,7 @@ class PwmBench {
   Checker& check() { return check_; }
   Dice& dice() { return dice_; }
   std::uint64_t pulses() const { return pulses_; }
-  std::uint64_t expected() const { return kComparedSignals * check_.cycles(); }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + clocks_; }
   std::uint32_t pins() { return dut_->pin_o; }
   std::uint32_t idle() const { return idle_; }
   void set_levels(std::uint32_t levels) { levels_ = levels & kPresent; }
@@ -169,11 +181,14 @@ class PwmBench {
     dut_->idle_i = static_cast<Pins>(idle_);
   }
 
-  void compare() {
-    check_.next_cycle();
+  void compare_pins() {
     const std::uint32_t pins =
         model_->pins(static_cast<std::uint16_t>(levels_), in_.speed.silent, in_.speed.ratio == 0);
     check_.compare("pin_o", dut_->pin_o, pins);
+  }
+  void compare() {
+    check_.next_cycle();
+    compare_pins();
     const bool on = model_->state().channels[0].on != 0;
     pulses_ += on && !was_on_ ? 1U : 0U;
     was_on_ = on;
@@ -187,6 +202,7 @@ class PwmBench {
   std::uint32_t idle_ = 0;
   std::uint32_t levels_ = 0;
   unsigned pace_ = 200;
+  std::uint64_t clocks_ = 0;
   std::uint64_t pulses_ = 0;
   bool was_on_ = false;
 };
@@ -292,8 +308,101 @@ void rest_is_dark() {
   bench.in().speed.silent = true;
   bench.clock();
   EXPECT_FALSE(lit());
+  bench.in().speed = {false, false, false, 0x8000'0000, 0x10000};
+  for (unsigned i = 0; i < 200; ++i) {
+    bench.clock();
+    EXPECT_FALSE(lit()) << i;
+  }
 }
 
+// Channel 1 with the length that its period has after a reset.
+void period_after_a_reset() {
+  PwmBench bench(12);
+  bench.set(reg::kPwmOutputs, 0x00010000);
+  bench.set_levels(~bench.idle());
+  bench.send(1, {false, 0, 0x8000, 0});
+  bench.apply();
+  bench.wait(1000);
+  const std::uint32_t period = card_map::find_register(reg::kPwmPeriod1).entry->reset;
+  EXPECT_EQ(bench.lit(3 * period), 3 * period / 2);
+}
+
+// So many PWM commands, each of which ends the work on an on-time before it is done.
+void send_at_once(PwmBench& bench, unsigned times, const model::Pwm::Order& order) {
+  for (unsigned i = 0; i < times; ++i) {
+    bench.send(0, order);
+    bench.apply();
+  }
+}
+
+// No on-time comes before the first period of a new length, which is written at each clock of the work on one: the
+// period has no pulse.
+void first_period_without_an_on_time() {
+  PwmBench bench(9);
+  constexpr unsigned kPeriod = 400;
+  const model::Pwm::Order order{false, 0, 0x8000, 0};
+  bench.set(reg::kPwmOutputs, 1);
+  bench.set_levels(~bench.idle());
+  bench.send(0, order);
+  bench.apply();
+  for (unsigned clock = 0; clock < 256; ++clock) {
+    bench.set(reg::kPwmPeriod0, kPeriod);
+    bench.wait(1024);
+    EXPECT_EQ(bench.lit(kPeriod), kPeriod / 2);
+    bench.wait(clock);
+    bench.set(reg::kPwmPeriod0, kPeriod);
+    send_at_once(bench, 110, order);
+    EXPECT_EQ(bench.lit(1), 0U);
+  }
+}
+
+// No on-time comes in the last clocks of a period, in which alone it is worked out: the pulse is that of before, though
+// the speed has changed meanwhile.
+void period_without_an_on_time() {
+  PwmBench bench(11);
+  const model::Pwm::Order order{true, 0, 0xFFFF, 0xFFFF};
+  bench.set(reg::kPwmPeriod0, 2000);
+  bench.set(reg::kPwmOutputs, 1);
+  bench.set_levels(~bench.idle());
+  bench.in().speed.runs = bench.in().speed.gives = true;
+  for (unsigned i = 0; i < 100; ++i) {
+    bench.in().speed.rate = bench.dice().draw();
+    bench.wait(1300 + bench.dice().below(2000));
+    send_at_once(bench, 140, order);
+  }
+  EXPECT_GT(bench.pulses(), 50U);
+}
+
+// The greatest rates whose product is still rounded down to nothing, and the next ones: that with the ratio, made large
+// by shift and gain; and that with the gain.
+void rounding_down() {
+  PwmBench bench(10);
+  bench.set(reg::kPwmOutputs, 1);
+  bench.set_levels(~bench.idle());
+  constexpr unsigned kPeriod = 32768;
+  bench.set(reg::kPwmPeriod0, kPeriod);
+  const auto lit = [&](std::uint32_t rate, std::uint32_t ratio) {
+    bench.in().speed = {true, true, false, rate, ratio};
+    bench.wait(2 * kPeriod);
+    return bench.lit(kPeriod);
+  };
+  bench.send(0, {true, 30, 0xFFFF, 0xFFFF});
+  bench.apply();
+  EXPECT_EQ(lit(0x1FFFF, 1), 0U);
+  EXPECT_GT(lit(0x20000, 1), kPeriod / 2);
+  bench.send(0, {true, 0, 0xFFFF, 1});
+  bench.apply();
+  EXPECT_EQ(lit(0x7FFDFFFE, 0x10000), 0U);
+  EXPECT_EQ(lit(0x7FFE0000, 0x10000), 1U);
+  bench.send(0, {true, 1, 0xFFFF, 0x4000});
+  bench.apply();
+  EXPECT_EQ(lit(0x4000'0000, 0x10000), kPeriod / 4) << "shifted up to 2^30, which is not cut";
+}
+
+TEST(Pwm, FirstPeriodWithoutAnOnTime) { EXPECT_EQ(judge(first_period_without_an_on_time), ""); }
+TEST(Pwm, PeriodWithoutAnOnTime) { EXPECT_EQ(judge(period_without_an_on_time), ""); }
+TEST(Pwm, PeriodAfterAReset) { EXPECT_EQ(judge(period_after_a_reset), ""); }
+TEST(Pwm, RoundingDown) { EXPECT_EQ(judge(rounding_down), ""); }
 TEST(Pwm, RandomTraffic) {
   EXPECT_EQ(judge([] { random_traffic(); }), "");
 }
