@@ -91,6 +91,9 @@ class Bench {
 
   void clock() {
     drive();
+    rtl_->eval();  // a unit that takes its request back is not told in this clock
+    more("captured", get(rtl_->capture_answer_o, trammel::bus::capture_answer::kCaptured),
+         model_.captured(in_.captures));
     const std::uint64_t snapshot = rtl_->snapshot_o;
     for (std::size_t i = chain_.size(); i-- > 1;) chain_[i].clock(snapshot, latched_value(i), chain_[i - 1]);
     chain_[0].clock(snapshot, latched_value(0));
@@ -153,6 +156,7 @@ class Bench {
     advance_time(*rtl_, more);
   }
 
+  bool link_lost() const { return model_.link().lost(); }
   Checker& checker() { return checker_; }
   std::uint64_t expected() const { return kComparedSignals * checker_.cycles() + more_; }
 
@@ -316,7 +320,7 @@ class Bench {
 
   std::uint32_t random_address() {
     if (chance(20)) return draw() & 0xFFF;
-    constexpr std::uint32_t kOften[] = {reg::kRefusal, reg::kControl, reg::kStream};
+    constexpr std::uint32_t kOften[] = {reg::kRefusal, reg::kControl, reg::kStream, reg::kStart};
     if (kCaptureFifo && chance(8)) return chance(2) ? reg::kCaptureQueue : reg::kCaptureHeadFault + 4 * (draw() % 16);
     if (chance(10)) return kOften[draw() % std::size(kOften)];
     const card_map::Register& entry = card_map::kRegisters[draw() % card_map::kRegisters.size()];
@@ -547,6 +551,21 @@ void snapshot_time_counts_clocks() {
   EXPECT_LT(second - first, between + 32);
 }
 
+// LINK_TIMEOUT passes in units of 2^16 clocks, of which those around their ends are run.
+void link_timeout_counts_units() {
+  Bench bench(1);
+  for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();
+  bench.skip_to(0xFFC0);
+  bench.access(true, reg::kLinkTimeout, 1);
+  for (std::uint64_t units = 1; units <= 2; ++units) {
+    EXPECT_FALSE(bench.link_lost());
+    bench.skip_to((units << 16) - 0x20);
+    for (int i = 0; i < 0x40; ++i) bench.clock();
+  }
+  EXPECT_TRUE(bench.link_lost());
+}
+
+TEST(RegisterFile, LinkTimeoutCountsUnits) { EXPECT_EQ("", trammel::lockstep::judge(link_timeout_counts_units)); }
 TEST(RegisterFile, SnapshotTimeCountsClocks) { EXPECT_EQ("", trammel::lockstep::judge(snapshot_time_counts_clocks)); }
 
 }  // namespace
