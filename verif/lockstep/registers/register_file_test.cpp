@@ -59,7 +59,8 @@ RegisterFile::Config configuration() {
 
 class Bench {
  public:
-  explicit Bench(std::uint64_t seed) : checker_("register_file", seed), random_(seed), model_(configuration()) {
+  explicit Bench(std::uint64_t seed, int state = trammel::lockstep::state_seed())
+      : checker_("register_file", seed), random_(seed), rtl_(state), model_(configuration()) {
     const RegisterFile::Config config = configuration();
     rtl_->clock_hz_i = config.clock_hz;
     rtl_->idle_level_i = static_cast<IdleLevel>(config.idle_level);
@@ -118,9 +119,22 @@ class Bench {
   std::uint32_t access(bool write, std::uint32_t address, std::uint32_t data) {
     ask(write, address, data);
     while (!model_.outputs().ack) clock();
+    access_refused_ = model_.outputs().error;
     const std::uint32_t answer = model_.outputs().data;
     clock();
     return answer;
+  }
+
+  // Unit 0 asks until it is told, a MARK beside its first clock.
+  void capture_and_mark() {
+    in_.captures = 1;
+    in_.mark = true;
+    for (bool told = false; !told; in_.mark = false) {
+      told = model_.captured(in_.captures) != 0;
+      clock();
+    }
+    in_.captures = 0;
+    for (std::uint32_t i = 0; i < 2 * kAxes + 40; ++i) clock();
   }
 
   void random_clock() {
@@ -156,6 +170,7 @@ class Bench {
     advance_time(*rtl_, more);
   }
 
+  bool refused() const { return access_refused_; }
   bool link_lost() const { return model_.link().lost(); }
   Checker& checker() { return checker_; }
   std::uint64_t expected() const { return kComparedSignals * checker_.cycles() + more_; }
@@ -453,8 +468,9 @@ class Bench {
   std::array<trammel::lockstep::SnapshotWord, kBeforePositions + kAxes> chain_;
   std::uint64_t more_ = 0;
   bool flushed_ = false;
-  bool streamed_ = false;  // since reset
-  bool refused_ = false;   // the last access
+  bool streamed_ = false;        // since reset
+  bool refused_ = false;         // the last access
+  bool access_refused_ = false;  // that of access()
   std::uint32_t checker_wait_ = 0;
   std::uint32_t start_wait_ = 0;
   std::uint32_t marks_every_ = 300;
@@ -536,6 +552,30 @@ TEST(RegisterFile, EveryWordIsItsOwn) {
               EXPECT_GT(bench.checker().cycles(), 2 * card_map::kWindowBytes);
             }));
 }
+
+// An absent axis has no register, whatever the flip-flops began with.
+void absent_axis() {
+  for (int state = 1; state <= 8; ++state) {
+    Bench bench(1, state);
+    bench.access(false, reg::mode(kAxes), 0);
+    EXPECT_TRUE(bench.refused());
+  }
+}
+
+// Which of both goes first does not depend on the snapshot before the reset.
+void captures_beside_marks() {
+  if (!kCaptures) return;
+  Bench bench(1);
+  for (int i = 0; i < 2; ++i) {
+    bench.reset();
+    for (std::uint64_t clock = 0; clock < kFilled; ++clock) bench.clock();
+    bench.capture_and_mark();
+    bench.capture_and_mark();
+  }
+}
+
+TEST(RegisterFile, AbsentAxis) { EXPECT_EQ("", trammel::lockstep::judge(absent_axis)); }
+TEST(RegisterFile, CapturesBesideMarks) { EXPECT_EQ("", trammel::lockstep::judge(captures_beside_marks)); }
 
 // A snapshot and its time, read twice in a row: the difference is the clocks between the two snapshots.
 void snapshot_time_counts_clocks() {
