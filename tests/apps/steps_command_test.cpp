@@ -99,7 +99,7 @@ TEST_F(StepsCommand, RefusesBadInput) {
   EXPECT_THAT(refusal({"--method", "steer", "--line", "0,0,1,99999999999999999999"}), HasSubstr("64 bits"));
   EXPECT_THAT(refusal({"--method", "steer", "--arc", "5,0,0,0,0,7"}), HasSubstr("not on one circle"));
   EXPECT_THAT(refusal({"--method", "dda", "--ellipse", "5,3"}), HasSubstr("cannot do ellipses"));
-  EXPECT_THAT(refusal({"--method", "dda", "--ellipse", "5,0"}), HasSubstr("below 1"));
+  EXPECT_THAT(refusal({"--method", "dda", "--ellipse", "5,0"}), HasSubstr("1 pulse or more"));
   file_ = "/nonexistent/steps.csv";
   EXPECT_THAT(refusal({"--method", "steer", "--circle", "5"}), HasSubstr("cannot be written"));
 }
