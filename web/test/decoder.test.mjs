@@ -254,9 +254,9 @@ test('what does not go together is refused, and leaves no file', () => {
     assert.ok(!existsSync(page))
     return stderr
   }
-  assert.match(refused('--report', page, '--check'), /nothing runs/)
+  assert.match(refused('--report', page, '--check'), /runs nothing/)
   assert.match(refused('--report', page, '--stream'), /whole program/)
-  assert.match(refused('--report-window', '1:2'), /no --report/)
+  assert.match(refused('--report-window', '1:2'), /needs --report/)
   assert.match(refused('--report', page, '--report-window', '2:1'), /ends before it begins/)
   assert.match(refused('--report', page, '--report-window', '2'), /FROM:TO/)
 })
