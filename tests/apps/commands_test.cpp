@@ -181,7 +181,7 @@ TEST(Commands, MachineChecks) {
   const Command command;
   const Outcome outcome = command.run("machine --check --machine built-in");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("axis Z: 100 mm/s"));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("axis Z: stops from 100 mm/s"));
   EXPECT_EQ(command.run("machine").status, 2);
 }
 

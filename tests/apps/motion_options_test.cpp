@@ -370,7 +370,7 @@ TEST_F(Operator, BadValuesAreRefusedWithTheirUnits) {
       {"--hold-at 1:-2", "-2 is not a duration from 0 to 1e+09 seconds of card time"},
       {"--hold-at 1:2 --hold-at 2:1", "begins before the one at 1 s is over"},
       {"--feed-scale 0", "must be a factor from 0.001 to 1000, not 0"},
-      {"--limit-bus 0.5", "must be bytes a second from 1 to 1000000000, not 0.5"},
+      {"--limit-bus 0.5", "must be bytes per second from 1 to 1000000000, not 0.5"},
       {"--from-line 0", "must be a whole number, 1 to 4294967295, not 0"},
       {"--from-line 2", "a.ngc:1: the program ends before line 2"},
       {"--check --steps -", "--steps: not with --check, which runs nothing"},

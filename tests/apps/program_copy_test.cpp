@@ -25,7 +25,7 @@ TEST(ProgramCopy, EndlessProgramIsRefused) {
   const Command command;
   for (const std::string source : {"- < <(yes 'G1 X1')", "<(yes '')"}) {
     const Outcome outcome = run_program(command, "--pipe-limit 1 " + source);
-    expect_program_refused(outcome, "more than 1 MiB");
+    expect_program_refused(outcome, "longer than 1 MiB");
     EXPECT_NE(outcome.err.find("--pipe-limit"), std::string::npos) << outcome.err;
   }
   expect_program_refused(run_program(command, "--pipe-limit 1 --stream -"), "--pipe-limit");
@@ -36,7 +36,7 @@ TEST(ProgramCopy, LimitIsOfPipesAloneAndCanBeRaised) {
   std::string comments;
   while (comments.size() < (1U << 20U)) comments += "(" + std::string(60000, ' ') + ")\n";
   const std::string file = command.write("long.ngc", comments + "G1 X1 F600\n");
-  expect_program_refused(run_program(command, "--check --pipe-limit 1 - < <(cat " + file + ")"), "more than 1 MiB");
+  expect_program_refused(run_program(command, "--check --pipe-limit 1 - < <(cat " + file + ")"), "longer than 1 MiB");
   EXPECT_EQ(run_program(command, "--check --pipe-limit 2 - < <(cat " + file + ")").status, 0);
   EXPECT_EQ(run_program(command, "--check - < <(cat " + file + ")").status, 0) << "without the option";
   EXPECT_EQ(run_program(command, "--check --pipe-limit 1 - <" + file).status, 0) << "a regular file";

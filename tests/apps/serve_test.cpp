@@ -277,7 +277,7 @@ TEST(CardOutside, AnAddressThatOthersReachIsWarnedOf) {
   const auto warned = [](const std::string& options) {
     const Command command;
     Server server(command, "--engine model " + options);
-    return server.said("the token travels unencrypted");
+    return server.said("the token is transmitted unencrypted");
   };
   EXPECT_TRUE(warned("--listen 0.0.0.0"));
   EXPECT_FALSE(warned(""));

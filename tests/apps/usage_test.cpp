@@ -326,7 +326,7 @@ TEST(Axes, CardHasAsManyAsTheMachine) {
   // Traced on four axes, and it says so.
   const Outcome traced = command.run(run + command.path("path3") + three + " --trace " + command.path("x.fst"));
   EXPECT_EQ(traced.status, 0);
-  EXPECT_NE(traced.err.find("card of 4 axes"), std::string::npos) << traced.err;
+  EXPECT_NE(traced.err.find("card with 4 axes"), std::string::npos) << traced.err;
 }
 
 TEST(Axes, EveryNumberIsBuiltAndTracesSayWhatServes) {

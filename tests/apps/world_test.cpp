@@ -75,7 +75,7 @@ TEST_F(BehindThePins, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_THAT(refused("--world " + wrong), HasSubstr("wrong.toml:2: unknown entry axis.x.mas"));
   EXPECT_THAT(refused("--world default --input-at 1:1:1"),
               HasSubstr("--input-at: input 1 is wired to a switch or button"));
-  EXPECT_THAT(refused("--world default --input-at 1:estop:1"), HasSubstr("wired the emergency stop"));
+  EXPECT_THAT(refused("--world default --input-at 1:estop:1"), HasSubstr("the emergency stop is wired"));
   EXPECT_THAT(refused("--world default --check"), HasSubstr("--world: not with --check, which runs nothing"));
   EXPECT_THAT(refused("--world-events " + wrong), HasSubstr("--world"));
   const std::string high = command_.write("high.toml", "[axis.x]\n[button.a]\ninput = 20\n");
