@@ -1,7 +1,7 @@
 // Captures through the driver: what it writes, what it reads of an edge behind a filter, and what it refuses before.
 #include <gmock/gmock.h>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/sim/engine.hpp"

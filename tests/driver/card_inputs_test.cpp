@@ -1,7 +1,7 @@
 // Filters, roles and stops of the card's inputs: what the driver writes, how it rounds, and what it refuses before.
 #include <gmock/gmock.h>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"

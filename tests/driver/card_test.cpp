@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/one_shot.hpp"

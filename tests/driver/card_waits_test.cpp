@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
@@ -28,16 +28,6 @@ using test::wrote;
 using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
-
-template <class ErrorType, class Call>
-std::string wait_error(Call call) {
-  try {
-    call();
-  } catch (const ErrorType& error) {
-    return error.what();
-  }
-  return "";
-}
 
 class CardWaits : public ::testing::Test {
  protected:
@@ -64,7 +54,7 @@ TEST_F(CardWaits, TheRestIsReadWhereThereIsOne) {
   EXPECT_TRUE(bus_.log.empty());
   Card card = open(4);
   bus_.values[reg::kStatus] = field::kStatusStopping;
-  EXPECT_EQ(wait_error<StateError>([&] { card.read_rest(); }),
+  EXPECT_EQ(message_of<StateError>([&] { card.read_rest(); }),
             "rest: the card is on its way to a stop: wait_until_stopped() first");
   bus_.values[reg::kStatus] = 0;
   bus_.values[reg::kRestTicksLeftLo] = 5;
@@ -86,7 +76,7 @@ TEST_F(CardWaits, AStopThatNeverComesToRestTimesOut) {
   Card card = open();
   bus_.values[reg::kSlew] = 1U << 20;  // 1,024 clocks
   bus_.values[reg::kStatus] = field::kStatusBusy;
-  EXPECT_THAT(wait_error<TimeoutError>([&] { card.stop(2ms); }), HasSubstr("stop on the path: not within"));
+  EXPECT_THAT(message_of<TimeoutError>([&] { card.stop(2ms); }), HasSubstr("stop on the path: not within"));
   EXPECT_GE(bus_.slept, 3ms);
   EXPECT_LE(bus_.slept, 4ms);
   EXPECT_EQ(bus_.values[reg::kHold], 1U) << "it goes on to rest, and holds";
@@ -97,7 +87,7 @@ TEST_F(CardWaits, AStopIsInterruptedWhereItHolds) {
   bus_.values[reg::kStatus] = field::kStatusBusy;
   be_slow();
   const InterruptScope interrupt([] { return true; });
-  EXPECT_EQ(wait_error<InterruptedError>([&] { card.stop(1s); }),
+  EXPECT_EQ(message_of<InterruptedError>([&] { card.stop(1s); }),
             "stop on the path: interrupted; the card goes on to rest, and holds");
   EXPECT_EQ(bus_.values[reg::kHold], 1U);
 }
@@ -122,7 +112,7 @@ TEST_F(CardWaits, WaitsForACaptureEndByAnInterrupt) {
   Card card = open();
   be_slow();
   const InterruptScope interrupt([] { return true; });
-  EXPECT_EQ(wait_error<InterruptedError>([&] { card.wait_for_capture(0, 1h); }),
+  EXPECT_EQ(message_of<InterruptedError>([&] { card.wait_for_capture(0, 1h); }),
             "waiting for a capture: interrupted; the unit goes on watching");
 }
 
@@ -137,7 +127,7 @@ TEST_F(CardWaits, ACardWithoutCapturesSaysSo) {
 TEST_F(CardWaits, ACardThatRefusesItsMagicIsGone) {
   Card card = open();
   bus_.on_access = [](const Access& access) { return access.address != reg::kMagic; };
-  EXPECT_THAT(wait_error<LinkError>([&] { card.wait_until_idle(1s); }), HasSubstr("it does not answer any more"));
+  EXPECT_THAT(message_of<LinkError>([&] { card.wait_until_idle(1s); }), HasSubstr("it does not answer any more"));
 }
 
 // A ratio of 0 is a hold: the slowest of the others stretches the time.
@@ -167,11 +157,11 @@ TEST_F(CardWaits, AHoldOfThisProgramIsWaitedOut) {
 TEST_F(CardWaits, AHoldIsNotThisProgramsThatHasEndedItsOwn) {
   Card card = open();
   card.set_hold(true);
-  EXPECT_EQ(wait_error<HeldError>([&] { card.parts().time_base.throw_if_held("test"); }),
+  EXPECT_EQ(message_of<HeldError>([&] { card.parts().time_base.throw_if_held("test"); }),
             "test: the card holds: set by this program: take it over, or end the hold");
   card.set_hold(false);
   bus_.values[reg::kHold] = 1;
-  EXPECT_EQ(wait_error<HeldError>([&] { card.parts().time_base.throw_if_held("test"); }),
+  EXPECT_EQ(message_of<HeldError>([&] { card.parts().time_base.throw_if_held("test"); }),
             "test: the card holds: take it over, or end the hold");
 }
 

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/sim/engine.hpp"

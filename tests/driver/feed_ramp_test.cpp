@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "steps.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/stream.hpp"

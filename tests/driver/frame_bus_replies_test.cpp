@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "error_message.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/frame_bus.hpp"
 #include "trammel/driver/interrupt.hpp"
@@ -70,16 +71,6 @@ class ReplyLink final : public ByteLink {
   std::chrono::nanoseconds clock_{0};
 };
 
-template <class ErrorType, class Call>
-std::string frame_error(Call call) {
-  try {
-    call();
-  } catch (const ErrorType& error) {
-    return error.what();
-  }
-  return "";
-}
-
 // Reads and writes; the others tell of the connection.
 bool of_an_access(const Reply& reply) { return reply.made != 0 || reply.has_data; }
 
@@ -89,7 +80,7 @@ class FrameReplies : public ::testing::Test {
   void connect() { bus_.emplace(link_, options_); }
   std::string write() {
     Access access = write_of(0x200, 7);
-    return frame_error<LinkError>([&] { bus_->transfer(&access, 1); });
+    return message_of<LinkError>([&] { bus_->transfer(&access, 1); });
   }
 
   ReplyLink link_;
@@ -103,7 +94,7 @@ TEST_F(FrameReplies, ACardThatConnectsButMakesNoAccess) {
   EXPECT_EQ(write(), "no answer to a request, sent 2 times on each of 4 connections");
   EXPECT_TRUE(bus_->lost());
   EXPECT_EQ(link_.written.size(), 1U) << "run once";
-  EXPECT_EQ(frame_error<LinkError>([&] { bus_->resume(); }), "the card connects, but does not answer");
+  EXPECT_EQ(message_of<LinkError>([&] { bus_->resume(); }), "the card connects, but does not answer");
   link_.on_reply = nullptr;
   EXPECT_EQ(bus_->resume(), 1U);
   EXPECT_EQ(write(), "");
@@ -117,7 +108,7 @@ TEST_F(FrameReplies, FewerWordsThanAskedForWithoutARefusal) {
     return true;
   };
   std::vector<Access> accesses{write_of(0x200, 1), write_of(0x204, 2)};
-  EXPECT_EQ(frame_error<LinkError>([&] { bus_->transfer(accesses.data(), accesses.size()); }),
+  EXPECT_EQ(message_of<LinkError>([&] { bus_->transfer(accesses.data(), accesses.size()); }),
             "the card made 1 of 2 accesses and refused none");
 }
 
@@ -174,7 +165,7 @@ TEST_F(FrameReplies, ACardThatOthersHaveUsedIsToldFromOneThatHasRunTheRequest) {
     return true;
   };
   EXPECT_THAT(write(), HasSubstr("the card was reset, or used by somebody else"));
-  EXPECT_THAT(frame_error<LinkError>([&] { bus_->resume(); }), HasSubstr("used by somebody else"));
+  EXPECT_THAT(message_of<LinkError>([&] { bus_->resume(); }), HasSubstr("used by somebody else"));
 }
 
 TEST_F(FrameReplies, OpensAtOnceOrNotAtAll) {
@@ -182,7 +173,7 @@ TEST_F(FrameReplies, OpensAtOnceOrNotAtAll) {
   options_.answer = 30ms;
   unsigned asked = 0;
   link_.on_reply = [&](Reply&) { return ++asked == 0; };
-  EXPECT_EQ(frame_error<LinkError>([&] { connect(); }), "no card answers within 30 ms");
+  EXPECT_EQ(message_of<LinkError>([&] { connect(); }), "no card answers within 30 ms");
   EXPECT_EQ(asked, 1U);
   link_.on_reply = nullptr;
   connect();
@@ -199,8 +190,8 @@ TEST_F(FrameReplies, AnInterruptPassesThrough) {
   link_.on_reply = [](Reply& reply) { return !of_an_access(reply); };
   link_.interrupting = true;
   Access access = write_of(0x200, 7);
-  EXPECT_EQ(frame_error<InterruptedError>([&] { bus_->transfer(&access, 1); }), "the program ends");
-  EXPECT_EQ(frame_error<InterruptedError>([&] { bus_->resume(); }), "the program ends");
+  EXPECT_EQ(message_of<InterruptedError>([&] { bus_->transfer(&access, 1); }), "the program ends");
+  EXPECT_EQ(message_of<InterruptedError>([&] { bus_->resume(); }), "the program ends");
   link_.interrupting = false;
   link_.on_reply = nullptr;
   EXPECT_EQ(bus_->resume(), 1U);
@@ -209,7 +200,7 @@ TEST_F(FrameReplies, AnInterruptPassesThrough) {
     link_.interrupting = !of_an_access(reply);
     return false;
   };
-  EXPECT_EQ(frame_error<InterruptedError>([&] { bus_->transfer(&access, 1); }), "the program ends");
+  EXPECT_EQ(message_of<InterruptedError>([&] { bus_->transfer(&access, 1); }), "the program ends");
   link_.interrupting = false;
   link_.on_reply = nullptr;
   EXPECT_EQ(bus_->resume(), 1U);

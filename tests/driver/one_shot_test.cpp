@@ -5,7 +5,7 @@
 
 #include <thread>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "posted_bus.hpp"
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"

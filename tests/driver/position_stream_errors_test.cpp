@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/interrupt.hpp"
 #include "trammel/driver/one_shot.hpp"
@@ -29,16 +29,6 @@ namespace field = card_map::field;
 
 constexpr std::uint64_t kMillisecond = 1000;  // clocks
 constexpr std::int64_t kWhole = PositionStream::kPulse;
-
-template <class ErrorType, class Call>
-std::string streaming_error(Call call) {
-  try {
-    call();
-  } catch (const ErrorType& error) {
-    return error.what();
-  }
-  return "";
-}
 
 // A bus that changes what is read, and takes the host's time for its sleeps.
 class ForgingBus final : public Bus {
@@ -165,7 +155,7 @@ TEST_F(StreamedPositions, FewerPeriodsThanAreSentAhead) {
   EXPECT_EQ(engine_->positions()[0], 0) << "not begun yet";
   EXPECT_EQ(stream_->finish()[0], 5 * kWhole);
   EXPECT_EQ(engine_->positions()[0], 5);
-  EXPECT_EQ(streaming_error<StateError>([&] { stream_->finish(); }),
+  EXPECT_EQ(message_of<StateError>([&] { stream_->finish(); }),
             "position stream: closed by an error or at its end; recover it, or open another");
 }
 
@@ -226,7 +216,7 @@ TEST_F(StreamedPositions, ABusThatIsTooSlowIsSaid) {
     open();
     go();
     bus_.on_read = forgery;
-    EXPECT_THAT(streaming_error<StateError>([&] { stream_->send({110 * kWhole}, kMillisecond); }),
+    EXPECT_THAT(message_of<StateError>([&] { stream_->send({110 * kWhole}, kMillisecond); }),
                 HasSubstr("position stream: period 11 was over when it was looked at: the bus is too slow for it"));
     bus_.on_read = nullptr;
     EXPECT_THROW(stream_->send({110 * kWhole}, kMillisecond), StateError) << "closed";
@@ -252,10 +242,10 @@ TEST_F(StreamedPositions, AnEndElsewhereIsFound) {
   bus_.on_read = [](Access& access) {
     if (access.address == reg::snap_position(1)) access.data += 3;
   };
-  EXPECT_EQ(streaming_error<StateError>([&] { stream_->finish(); }),
+  EXPECT_EQ(message_of<StateError>([&] { stream_->finish(); }),
             "position stream: axis 1 ended 3 pulses from where it was sent: the card was used by somebody else");
   bus_.on_read = nullptr;
-  EXPECT_EQ(streaming_error<StateError>([&] { stream_->finish(); }),
+  EXPECT_EQ(message_of<StateError>([&] { stream_->finish(); }),
             "position stream: closed by an error or at its end; recover it, or open another");
   EXPECT_EQ(stream_->recover().positions[0], 100 * kWhole);
 }
@@ -281,7 +271,7 @@ TEST_F(StreamedPositions, RecoveryIsInterruptedAndMadeAgain) {
   bus_.takes = kInterruptSlice;
   {
     const InterruptScope interrupt([] { return true; });
-    EXPECT_EQ(streaming_error<InterruptedError>([&] { stream_->recover(); }),
+    EXPECT_EQ(message_of<InterruptedError>([&] { stream_->recover(); }),
               "position stream: interrupted before the card stood; recover it again");
   }
   bus_.takes = 0ns;
@@ -300,7 +290,7 @@ TEST_F(StreamedPositions, RecoveryOfACardThatNeverStandsTimesOut) {
     if (access.address == reg::kStatus) access.data |= field::kStatusBusy;
   };
   const std::uint64_t begun = engine_->cycles();
-  EXPECT_THAT(streaming_error<TimeoutError>([&] { stream_->recover(); }),
+  EXPECT_THAT(message_of<TimeoutError>([&] { stream_->recover(); }),
               HasSubstr("position stream: waiting for the card to stand: not within"));
   EXPECT_GE(engine_->cycles() - begun, 15'000U) << "the longest ramp and the margin";
   EXPECT_LE(engine_->cycles() - begun, 25'000U);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
@@ -26,16 +26,6 @@ namespace field = card_map::field;
 
 // 1,000 pulses in a second.
 std::vector<Command> probing_paths() { return {feed_of(62'500), line_of(62'500, 1000)}; }
-
-template <class ErrorType, class Call>
-std::string probing_error(Call call) {
-  try {
-    call();
-  } catch (const ErrorType& error) {
-    return error.what();
-  }
-  return "";
-}
 
 class Probing : public ::testing::Test {
  protected:
@@ -164,14 +154,14 @@ class ProbingOnStub : public ::testing::Test {
 
 TEST_F(ProbingOnStub, AnEdgeThatSomebodyElseHasClearedIsNoMiss) {
   say_begun(2);
-  EXPECT_EQ(probing_error<StateError>([&] { probe(); }),
+  EXPECT_EQ(message_of<StateError>([&] { probe(); }),
             "probe: it is over without an edge and without a miss: somebody else has cleared it");
   EXPECT_THROW(stream_->flush(), StateError) << "closed";
 }
 
 TEST_F(ProbingOnStub, AnIdleCardThatHasNotBegunAllWasReset) {
   say_begun(1);
-  EXPECT_THAT(probing_error<StateError>([&] { probe(); }),
+  EXPECT_THAT(message_of<StateError>([&] { probe(); }),
               HasSubstr("the card is idle, but of 2 geometry and 2 feed commands it has begun 1 and 1"));
   EXPECT_THROW(stream_->flush(), StateError) << "closed";
 }
@@ -185,7 +175,7 @@ TEST_F(ProbingOnStub, AHangTimesOut) {
     if (written) bus_.values[reg::kStatus] = field::kStatusBusy;
     return begun(access);
   };
-  EXPECT_THAT(probing_error<TimeoutError>([&] { probe(); }),
+  EXPECT_THAT(message_of<TimeoutError>([&] { probe(); }),
               HasSubstr("probe: waiting for the edge or the end of the paths: not within"));
   EXPECT_GE(bus_.slept, 26ms) << "16,000 clocks of the piece, and the margin";
   EXPECT_LE(bus_.slept, 27ms);

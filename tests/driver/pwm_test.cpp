@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"

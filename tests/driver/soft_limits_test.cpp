@@ -1,7 +1,7 @@
 // Soft limits of the card: what the driver writes, and on the model that they stop an axis where they say.
 #include <gmock/gmock.h>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"

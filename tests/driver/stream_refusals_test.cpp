@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
@@ -21,16 +21,6 @@ using test::RegisterStub;
 using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
-
-template <class ErrorType, class Call>
-std::string stream_error(Call call) {
-  try {
-    call();
-  } catch (const ErrorType& error) {
-    return error.what();
-  }
-  return "";
-}
 
 class StreamRefusals : public ::testing::Test {
  protected:
@@ -94,11 +84,11 @@ TEST_F(StreamRefusals, InputsThatTheCardLacks) {
 TEST_F(StreamRefusals, ARoomBeyondItsQueueIsNoCard) {
   open();
   bus_.values[reg::kFeedRoom] = 2561;
-  EXPECT_EQ(stream_error<LinkError>([&] { stream_->send(feed_of(1)); }),
+  EXPECT_EQ(message_of<LinkError>([&] { stream_->send(feed_of(1)); }),
             "stream: a feed queue with room for 2561 halfwords: what answers is no card");
   open();
   bus_.values[reg::kGeometryRoom] = 4097;
-  EXPECT_EQ(stream_error<LinkError>([&] { stream_->send(line_of(1)); }),
+  EXPECT_EQ(message_of<LinkError>([&] { stream_->send(line_of(1)); }),
             "stream: a geometry queue with room for 4097 halfwords: what answers is no card");
 }
 
@@ -106,7 +96,7 @@ TEST_F(StreamRefusals, ARoomBeyondItsQueueIsNoCard) {
 TEST_F(StreamRefusals, AnIdleCardWithoutRoomTimesOut) {
   open();
   bus_.values[reg::kGeometryRoom] = 6;
-  EXPECT_THAT(stream_error<TimeoutError>([&] { stream_->send(line_of(1)); }),
+  EXPECT_THAT(message_of<TimeoutError>([&] { stream_->send(line_of(1)); }),
               HasSubstr("stream: waiting for room in the card's queues: not within"));
   EXPECT_GE(bus_.slept, 10ms);
   EXPECT_LE(bus_.slept, 11ms);
@@ -117,10 +107,10 @@ TEST_F(StreamRefusals, AnIdleCardThatKeepsWhatItWasSentWasReset) {
   bus_.next[reg::kGeometryRoom] = {7};
   bus_.values[reg::kGeometryRoom] = 6;
   stream_->send(line_of(1));
-  EXPECT_THAT(stream_error<StateError>([&] { stream_->send(line_of(1)); }),
+  EXPECT_THAT(message_of<StateError>([&] { stream_->send(line_of(1)); }),
               HasSubstr("the card is idle, but of 1 geometry and 0 feed commands it has begun 0 and 0"));
   EXPECT_EQ(bus_.slept, 100us) << "found at the second look";
-  EXPECT_EQ(stream_error<StateError>([&] { stream_->flush(); }), "stream: closed by an error; restart it");
+  EXPECT_EQ(message_of<StateError>([&] { stream_->flush(); }), "stream: closed by an error; restart it");
 }
 
 // Another access than a word of the stream was refused, by a bus that does not tell of it.
@@ -129,7 +119,7 @@ TEST_F(StreamRefusals, ARefusalThatALookFindsClosesTheStream) {
   stream_->send(line_of(1));
   bus_.values[reg::kStatus] = field::kStatusBusy | field::kStatusRefused;
   bus_.values[reg::kRefusal] = reg::kSlew << 16 | static_cast<unsigned>(card_map::Reason::BadValue);
-  EXPECT_THAT(stream_error<RefusedError>([&] { stream_->finish(); }), HasSubstr("Access to SLEW"));
+  EXPECT_THAT(message_of<RefusedError>([&] { stream_->finish(); }), HasSubstr("Access to SLEW"));
   EXPECT_EQ(bus_.values[reg::kRefusal], 0U);
   EXPECT_THROW(stream_->flush(), StateError);
 }

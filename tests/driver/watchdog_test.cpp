@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "argument_error.hpp"
+#include "error_message.hpp"
 #include "register_stub.hpp"
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
