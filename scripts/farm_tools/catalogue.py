@@ -15,8 +15,9 @@ LISTS = (tested.builds, hardware.tools, tested.locksteps, hardware.mutations, ha
 
 
 def samples() -> List[Job]:
-    """One or two short jobs of every kind, with the builds that they need."""
-    jobs = [job for job in (*tested.builds(), *hardware.tools()) if job.id != "build-mutation"]
+    """One or two short jobs of every kind, with the builds that they need: a sample of the long ones."""
+    long_builds = ("build-mutation", "build-dev", "build-coverage")
+    jobs = [job for job in (*tested.builds(), *hardware.tools()) if job.id not in long_builds]
     blocks = "^lockstep[.](feed_generator|arc_generator|motion_core_4)[.].*Random"
     jobs += [tested.ctest("quick-lockstep", "lockstep", "release", "-R", blocks, inputs=tested.LOCKSTEP, TRAMMEL_SEED="7",
                           TRAMMEL_LONG="4"),
@@ -27,8 +28,7 @@ def samples() -> List[Job]:
              hardware.placement("hx8k-axis", 1, "quick-placement"),
              tested.soak("quick-soak", 7, "10"),
              tested.fuzzer("quick-fuzz", "gcode", 99, 30),
-             tested.sanitizer("quick-sanitizer", 1, 200),
-             tested.coverage("quick-coverage", "rtl/coverage.json", "--only", "^(step_shaper|time_base)$", seconds=20.0)]
+             tested.sanitizer_sample(), tested.coverage_sample()]
     if tested.has_programs():
         jobs.append(tested.program("arc-yz-plane", "quick-program", long_run=False))
     return jobs

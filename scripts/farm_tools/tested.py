@@ -24,6 +24,7 @@ RANDOM = ("^lockstep[.].*(Random|Storm|EqualsModelInEvery|EveryOutputInEvery|All
           "BouncingInputs|CapturesAndDrops|LockstepUnderTraffic|OnTimesFollow)")
 WHOLE_CARDS = "^lockstep[.](card[.]|card_engines|motion_core)"
 NO_LOCKSTEP = "^lockstep[.](checker|selftest)"
+COVERAGE_SAMPLE = "^(step_shaper|time_base)$"
 # Seconds below are guesses until somebody has measured them: scripts/farm expect.
 # Five seeds of four times the length: as many clocks as scripts/test --long lockstep.
 SEEDS, LENGTH = range(1, 6), "4"
@@ -49,16 +50,20 @@ def ctest(name: str, kind: str, build: str, *options: str, inputs=SOURCES, secon
 
 
 def builds() -> List[Job]:
-    def made(name: str, needs=(), products=(), seconds=600.0) -> Job:
-        return Job(f"build-{name}", "build", (BUILD, name), SOURCES, needs, products=products, tools=COMPILERS,
+    def made(name: str, needs=(), products=(), seconds=600.0, command=()) -> Job:
+        return Job(f"build-{name}", "build", (BUILD, *(command or (name,))), SOURCES, needs, products=products, tools=COMPILERS,
                    seconds=seconds, limit=LIMIT_OF_BUILDS)
 
     # One after the other: two builds in one folder wait for each other, and each takes all processors of its machine.
     return [made("release", products=("build/release/bin/trammel",), seconds=1200),
             made("mutation-sample", ("build-release",), ("build/release/mutation/sample_judges.json",)),
             made("mutation", ("build-mutation-sample",), ("build/release/mutation/judges.json",)),
-            made("dev", ("build-release",), ("build/dev/bin/trammel",), 3600),
-            made("coverage", ("build-release",), ("build/rtl-coverage/bin/lockstep_motion_core_8", "build/coverage/bin/test_planner"), 3600)]
+            made("dev-sample", ("build-release",), ("build/dev/bin/test_driver",), 300, ("dev", "test_driver")),
+            made("dev", ("build-dev-sample",), ("build/dev/bin/trammel",), 3600),
+            made("coverage-sample", ("build-release",), ("build/rtl-coverage/bin/lockstep_time_base",), 120,
+                 ("coverage", "--only", COVERAGE_SAMPLE)),
+            made("coverage", ("build-coverage-sample",),
+                 ("build/rtl-coverage/bin/lockstep_motion_core_8", "build/coverage/bin/test_planner"), 3600)]
 
 
 def locksteps() -> List[Job]:
@@ -107,19 +112,28 @@ def programs() -> List[Job]:
     return [program(name) for name in PROGRAMS] if has_programs() else []
 
 
-def coverage(name: str, result: str, *options: str, seconds=600.0) -> Job:
-    return Job(name, "coverage", ("scripts/coverage", "--no-build", "-j", "1", "--out", WORK, *options), COVERED, ("build-coverage",),
-               result_file=result, tools=(*COMPILERS, "gcov"), seconds=seconds)
+def coverage(name: str, result: str, *options: str, build="coverage", seconds=600.0) -> Job:
+    return Job(name, "coverage", ("scripts/coverage", "--no-build", "-j", "1", "--out", WORK, *options), COVERED,
+               (f"build-{build}",), result_file=result, tools=(*COMPILERS, "gcov"), seconds=seconds)
+
+
+def coverage_sample() -> Job:
+    return coverage("quick-coverage", "rtl/coverage.json", "--only", COVERAGE_SAMPLE, build="coverage-sample", seconds=20.0)
 
 
 def coverages() -> List[Job]:
     return [coverage("coverage-rtl", "rtl/coverage.json"), coverage("coverage-cpp", "cpp/coverage.json", "--cpp")]
 
 
-def sanitizer(name: str, shard: int, shards: int) -> Job:
-    return ctest(name, "sanitizer", "dev", "-LE", "slow|package|armhf", "-I", f"{shard},,{shards}", seconds=10_000.0 / shards)
+def sanitizer(name: str, shard: int) -> Job:
+    return ctest(name, "sanitizer", "dev", "-LE", "slow|package|armhf", "-I", f"{shard},,{SANITIZER_SHARDS}",
+                 seconds=10_000.0 / SANITIZER_SHARDS)
+
+
+def sanitizer_sample() -> Job:
+    return Job("quick-sanitizer", "sanitizer", ("ctest", "--test-dir", WORK, "--no-tests=error", "-V", "-R", "^driver[.]", "-I", "1,,8"),
+               SOURCES, ("build-dev-sample",), tests="dev", tools=COMPILERS, seconds=50.0)
 
 
 def sanitizers() -> List[Job]:
-    return [sanitizer(f"sanitizer-{shard}-of-{SANITIZER_SHARDS}", shard, SANITIZER_SHARDS)
-            for shard in range(1, SANITIZER_SHARDS + 1)]
+    return [sanitizer(f"sanitizer-{shard}-of-{SANITIZER_SHARDS}", shard) for shard in range(1, SANITIZER_SHARDS + 1)]
