@@ -77,6 +77,35 @@ def coverage(records: list[dict]) -> dict:
     return found
 
 
+def mutants(records: list[dict]) -> dict:
+    """Each module's mutants that were tried and killed. Shards of one command are added up; where the mutants were cut into
+    shards in two ways, the way that has tried more of the module's counts."""
+    ways: dict = {}
+    for record in (r for r in records if "mutants" in r):
+        way = re.sub(r"\d+", "", record["job"])
+        for module, figure in record["mutants"].items():
+            found = ways.setdefault(module, {}).setdefault(way, dict.fromkeys(figure, 0))
+            ways[module][way] = {name: found[name] + number for name, number in figure.items()}
+    return {module: max(found.values(), key=lambda figure: figure["tried"]) for module, found in ways.items()}
+
+
+def proofs(records: list[dict]) -> dict:
+    """Each proof's runs, with covers and seeded bugs, of the newest record that has it."""
+    found: dict = {}
+    for record in sorted((r for r in records if "proofs" in r), key=lambda r: r["begun"]):
+        found.update(record["proofs"])
+    return found
+
+
+def parts() -> list[str]:
+    """The runs that a release candidate should have: all tests, and each part of scripts/test --long or each of its shards."""
+    found = re.findall(r'^part (\w+) \d+ ".*"(?: (\d+))?$', (ROOT / "scripts/test").read_text(), re.M)
+    if not found:
+        raise SystemExit("error: scripts/test names no parts: lines `part NAME MINUTES \"TEXT\" [SHARDS]` are expected")
+    return ["tests"] + [f"part-{name}{shard}" for name, shards in found
+                        for shard in ([f"-{number}" for number in range(1, int(shards) + 1)] if shards else [""])]
+
+
 def gather(folder: Path = EVIDENCE) -> dict:
     """All that the page shows; `folder` holds the release candidates' runs."""
     candidates = releases(folder)
@@ -86,7 +115,10 @@ def gather(folder: Path = EVIDENCE) -> dict:
         "runs_file": newest["file"],
         "runs": newest["records"],
         "modules": json.loads((EVIDENCE / "modules.json").read_text()),
+        "missing_runs": [part for part in parts() if part not in {record["job"] for record in newest["records"]}],
         "coverage": coverage(newest["records"]),
+        "mutants": mutants(newest["records"]),
+        "proofs": proofs(newest["records"]),
         "foreign_judges": foreign_judges(newest["records"]),
         "sizes": sizes(),
         "papers": papers(),

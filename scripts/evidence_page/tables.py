@@ -48,18 +48,39 @@ def runs(data: dict) -> str:
     rows = [[code(run["job"]), mark(run["result"]), "; ".join(f"{number(n)} {escape(what)}" for what, n in sorted(run["counts"].items())),
              f"{run['processor_seconds']:,.0f}", f"{run['seconds']:,.0f}", code(run["commit"][:8]), code(run["command"])]
             for run in data["runs"]]
+    rows += [[code(job), '<span class="none">not recorded</span>', "", "", "", "", ""] for job in data["missing_runs"]]
     return table(["run", "result", "counted", "processor s", "s", "commit", "command"], rows, "Complete runs of this release candidate")
 
 
 def modules(data: dict) -> str:
     rows = []
     for row in data["modules"]:
-        proof = link(f"verif/formal/{row['proof']}.properties", row["proof"]) if row["proof"] else '<span class="none">none</span>'
-        rows.append([link(f"rtl/{row['file']}", row["module"]), code(row["lockstep"]), number(row["seeded_bugs"]), proof,
-                     number(row["mutants"]), number(row["listed"]),
+        rows.append([link(f"rtl/{row['file']}", row["module"]), code(row["lockstep"]), number(row["seeded_bugs"]),
+                     proved(data["proofs"], row["proof"]), killed(data["mutants"], row), number(row["listed"]),
                      *(covered(data["coverage"], row["module"], kind) for kind in KINDS)])
-    return table(["module", "smallest lockstep", "seeded bugs", "proof", "mutants", "listed as equivalent",
+    return table(["module", "smallest lockstep", "seeded bugs", "proof, and its runs as expected", "mutants killed", "listed as equivalent",
                   *(f"{kind} points covered" for kind in KINDS)], rows, "Modules of the RTL")
+
+
+def proved(proofs: dict, name: str | None) -> str:
+    """A proof with its covers and seeded bugs; a module that only connects others has none."""
+    if not name:
+        return '<span class="none">none</span>'
+    figure = proofs.get(name)
+    if not figure:
+        return f'{link(f"verif/formal/{name}.properties", name)}, <span class="none">not recorded</span>'
+    text = f"{figure['as_expected']} of {figure['runs']}"
+    verdict = text if figure["as_expected"] == figure["runs"] else f'<span class="bad">{text}</span>'
+    return f'{link(f"verif/formal/{name}.properties", name)}, {verdict}'
+
+
+def killed(mutants: dict, row: dict) -> str:
+    """Of all mutants of the module. Those that are listed with a reason need not be killed."""
+    figure = mutants.get(row["module"], {"tried": 0, "killed": 0})
+    if figure["tried"] < row["mutants"]:
+        return f'<span class="none">{number(figure["tried"])} of {number(row["mutants"])} tried</span>'
+    text = f"{number(figure['killed'])} of {number(row['mutants'])}"
+    return text if figure["killed"] + row["listed"] >= figure["tried"] else f'<span class="bad">{text}</span>'
 
 
 def covered(coverage: dict, module: str, kind: str) -> str:

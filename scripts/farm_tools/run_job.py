@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import Optional
 
-from records import counts, coverage, identity, record, results
+from records import counts, coverage, figures, identity, record, results
 
 from . import processes
 from .job import WORK, Job
@@ -55,8 +55,7 @@ class Run:
             "counts": self._counts(), "tools": identity.versions(self.job.tools), "machine": identity.machine(),
             "log": str(self.log.relative_to(self.folder)),
         }
-        if figures := self._coverage():
-            entry["coverage"] = figures
+        entry |= {name: found for name, found in self._figures().items() if found}
         results.store(self.folder, record.check(entry, self.job.id))
         return entry
 
@@ -99,9 +98,12 @@ class Run:
         status = status if status >= 0 else 128 - status
         return ("passed" if status == 0 else "failed"), status
 
-    def _coverage(self):
+    def _figures(self) -> dict:
+        """By module or proof."""
         path = self.work / self.job.result_file
-        return coverage.of_file(path) if path.name == "coverage.json" else {}
+        return {"coverage": coverage.of_file(path) if path.name == "coverage.json" else {},
+                "mutants": figures.mutants(path) if path.name == "results.csv" else {},
+                "proofs": figures.proofs(self.log.read_text(errors="replace")) if self.job.kind == "proof" else {}}
 
     def _counts(self):
         found = counts.of_text(self.log.read_text(errors="replace"))

@@ -6,6 +6,8 @@ from collections import Counter
 from pathlib import Path
 from typing import Dict
 
+from . import figures
+
 # Lines "NUMBER TEXT ...", in scripts/test "compared NUMBER TEXT". Their numbers are added.
 COUNTED = ("clocks of random traffic", "cycles of arcs", "stops judged", "of them with random inputs",
            "frames through a bad link", "frames of random contents", "frames spoiled", "clocks of soak")
@@ -23,7 +25,6 @@ SUMMARIES = (
     re.compile(r"^(?P<seeded_bugs_found>\d+) of \d+ seeded bugs found$", re.M),
     re.compile(r"stat::number_of_executed_units: (?P<inputs_tried>\d+)"),
 )
-PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) .* s  (ok|FAILED)", re.M)
 GOOGLETEST = re.compile(r"^\[  PASSED  \] (\d+) tests?\.", re.M)
 SKIPPED = re.compile(r"^\t *\d+ - .* \((?:Skipped|Disabled)\)$", re.M)
 
@@ -45,9 +46,9 @@ def of_text(text: str) -> Dict[str, int]:
     for summary in SUMMARIES:
         for match in summary.finditer(text):
             found.update({name: int(number) for name, number in match.groupdict().items()})
-    proofs = PROOF_RUN.findall(text)
-    if proofs:
-        found.update({"proof_runs": len(proofs), "proof_runs_as_expected": proofs.count("ok")})
+    if proofs := figures.proofs(text).values():
+        found.update({"proof_runs": sum(each["runs"] for each in proofs),
+                      "proof_runs_as_expected": sum(each["as_expected"] for each in proofs)})
     if "tests" in found:
         found["tests_skipped"] = len(SKIPPED.findall(text))
     else:  # one program, without ctest

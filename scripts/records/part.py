@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from . import counts, coverage, identity, record, results, suite
+from . import counts, coverage, figures, identity, record, results, suite
 
 # Pages for developers judge nothing and are judged by nothing.
 INPUTS = (".", ":!docs/developer", ":!docs/decisions", f":!{identity.EVIDENCE}", ":!README.md", ":!CHANGELOG.md")
@@ -26,6 +26,7 @@ def arguments_of(argv):
     parser.add_argument("--suite", nargs=2, type=Path, metavar=("JUNIT", "LOG"), help="ctest's results and its whole log: for "
                         "what the tests compared, and the verdicts of programs from elsewhere")
     parser.add_argument("--coverage", type=Path, metavar="FILE", help="coverage.json of scripts/coverage: each module's figures")
+    parser.add_argument("--mutants", type=Path, metavar="FILE", help="results.csv of scripts/mutate: each module's figures")
     return parser.parse_args(argv)
 
 
@@ -41,13 +42,18 @@ def main(argv) -> int:
     arguments = arguments_of(argv)
     result = {0: "passed", TIMEOUT_STATUS: "timeout"}.get(arguments.status, "failed")
     log = arguments.folder / f"{arguments.job}.log"
-    counted, verdicts = counts.of_text(log.read_text(errors="replace")), {}
+    text = log.read_text(errors="replace")
+    counted, verdicts = counts.of_text(text), {}
     if arguments.suite:
         junit, whole = arguments.suite
         counted |= counts.of_text(whole.read_text(errors="replace")) | suite.counts_of(junit)
         verdicts = {"tests": suite.foreign(junit)}
-    if arguments.coverage and (figures := coverage.of_file(arguments.coverage)):
-        verdicts["coverage"] = figures
+    if arguments.coverage and (found := coverage.of_file(arguments.coverage)):
+        verdicts["coverage"] = found
+    if arguments.mutants and (found := figures.mutants(arguments.mutants)):
+        verdicts["mutants"] = found
+    if found := figures.proofs(text):
+        verdicts["proofs"] = found
     entry = {
         "job": arguments.job,
         "kind": "part",

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Callable, Dict, Tuple
 
-from . import coverage
+from . import coverage, figures
 
 KINDS = ("lockstep", "mutation", "proof", "placement", "fuzz", "program", "sanitizer", "soak", "coverage", "part", "build")
 RESULTS = ("passed", "failed", "timeout", "cancelled")
@@ -69,6 +69,7 @@ FIELDS: Dict[str, Tuple[Callable[[object], bool], str]] = {
 OPTIONAL = {
     "coverage": (coverage.is_right, "points, covered and waived of line, branch and toggle by module"),
     "tests": (_maps_to(lambda value: value in ("passed", "failed", "skipped")), "passed, failed or skipped by test"),
+    **figures.FIELDS,
 }
 
 

@@ -1,5 +1,6 @@
 """The evidence page: what a run's record must make of it. Seen to fail: with mark() always "good", with a release order by
-text, with a foreign judge that passes without a run, with cells that are not escaped, with missing points that are not red."""
+text, with a foreign judge that passes without a run, with cells that are not escaped, with missing points that are not red, with
+two ways of cutting the mutants added up, with the older record of a proof, with survivors that are not red, with no missing runs."""
 import json
 import pathlib
 import sys
@@ -87,6 +88,38 @@ class Page(unittest.TestCase):
         self.assertIn('<span class="bad">7 of 9</span>', page.html(self.data(v1_0_0=[run("part-coverage", coverage=counted(7))])))
         row = next(line for line in text.splitlines() if ">motion_part<" in line)
         self.assertIn("<td>none</td>", row)
+
+    def cell(self, data, module, column):
+        row = next(line for line in page.html(data).splitlines() if f">{module}</a>" in line and "<td><code>" in line)
+        return row.split("</td><td>")[column]
+
+    def test_mutants_of_shards_are_added_and_those_of_two_ways_are_not(self):
+        module = next(row for row in gather(self.path)["modules"] if row["listed"] == 1)
+        name, half = module["module"], module["mutants"] // 2
+
+        def shards(killed):
+            return self.data(v1_0_0=[run("mutation-1-of-60", mutants={name: {"tried": half, "killed": half}}),
+                                     run("part-mutation-1", mutants={name: {"tried": half, "killed": half}}),
+                                     run("part-mutation-2", mutants={name: {"tried": module["mutants"] - half, "killed": killed}})])
+
+        rest = module["mutants"] - half
+        self.assertEqual(self.cell(shards(rest - 1), name, 4), f"{module['mutants'] - 1:,} of {module['mutants']:,}")
+        self.assertIn('class="bad"', self.cell(shards(rest - 2), name, 4))
+        self.assertIn(f"{half} of", self.cell(self.data(v1_0_0=[run("mutation-1-of-60", mutants={name: {"tried": half, "killed": half}})]), name, 4))
+
+    def test_a_proof_shows_its_newest_runs(self):
+        module = next(row for row in gather(self.path)["modules"] if row["proof"])
+        older = run("part-proofs", begun="2025-01-31T23:59:59.999Z", proofs={module["proof"]: {"runs": 9, "as_expected": 9}})
+        newer = run("proof-x", kind="proof", proofs={module["proof"]: {"runs": 8, "as_expected": 7}})
+        self.assertIn('<span class="bad">7 of 8</span>', self.cell(self.data(v1_0_0=[newer, older]), module["module"], 3))
+        self.assertIn("not recorded", self.cell(self.data(v1_0_0=[run("part-unit")]), module["module"], 3))
+
+    def test_runs_that_are_missing_are_named(self):
+        data = self.data(v1_0_0=[run("tests"), run("part-mutation-3")])
+        self.assertNotIn("tests", data["missing_runs"])
+        self.assertNotIn("part-mutation-3", data["missing_runs"])
+        self.assertLess({"part-mutation-12", "part-soak", "part-sanitizers-1"}, set(data["missing_runs"]))
+        self.assertIn("<code>part-soak</code>", page.html(data))
 
     def test_charts_begin_with_the_second_release(self):
         self.assertIn("begin with the second", charts.section(self.data(v1_0_0=[run("part-unit")])["history"]))

@@ -6,7 +6,7 @@ import unittest
 
 from support import InAFolder, a_record, random_records
 
-from records import counts, keep, record, results, suite  # noqa: E402
+from records import counts, figures, keep, record, results, suite  # noqa: E402
 
 WRONG = {
     "job": ["", "../x", 3], "kind": ["other"], "command": [None], "commit": ["0123", "z" * 40], "clean": [1, "true"],
@@ -45,6 +45,12 @@ class Malformed(InAFolder):
         for wrong in ([], {"axis": 1}, {"axis": {"magic": right["axis"]["line"]}}, {"axis": {"line": {"points": 3}}},
                       {"axis": {"line": {"points": 3, "covered": "2", "waived": 1}}}):
             self.assertIn("field coverage", self.refusal(a_record(coverage=wrong)))
+
+    def test_figures_of_mutants_and_proofs_are_integers_with_their_names(self):
+        for field, right in (("mutants", {"tried": 3, "killed": 2}), ("proofs", {"runs": 3, "as_expected": 3})):
+            record.check(a_record(**{field: {"axis": right}}), "right")
+            for wrong in ([], {"axis": 1}, {"axis": {}}, {"axis": dict.fromkeys(right, "1")}, {"axis": {**right, "more": 1}}):
+                self.assertIn(f"field {field}", self.refusal(a_record(**{field: wrong})))
 
     def test_what_is_no_record_is_refused(self):
         for content in ("", "{", "[1]", "3"):
@@ -113,6 +119,20 @@ class Suite(InAFolder):
         record.check(a_record(tests=verdicts), "x")
         with self.assertRaisesRegex(record.RecordError, "field tests"):
             record.check(a_record(tests={"a": "run"}), "x")
+
+
+class Figures(InAFolder):
+    def test_mutants_that_lived_are_not_killed(self):
+        path = self.folder / "results.csv"
+        self.assertEqual(figures.mutants(path), {})
+        path.write_text("id,how,module\na-1,mismatch,axis\na-2,lived,axis\na-3,timed out,axis\nb-1,lived,pwm\n")
+        self.assertEqual(figures.mutants(path), {"axis": {"tried": 3, "killed": 2}, "pwm": {"tried": 1, "killed": 0}})
+
+    def test_proofs_have_their_covers_and_seeded_bugs(self):
+        log = ("== frame_crc: bit by bit\nproof    frame_crc      0.3 s  ok\ncover    frame_crc byte   0.5 s  ok\n"
+               "bug      frame_crc tap_lost  0.3 s  FAILED (status 1)\nlemma    steer     1.0 s  ok\nnothing  frame_crc  1.0 s  ok\n")
+        self.assertEqual(figures.proofs(log), {"frame_crc": {"runs": 3, "as_expected": 2}, "steer": {"runs": 1, "as_expected": 1}})
+        self.assertEqual(counts.of_text(log), {"proof_runs": 4, "proof_runs_as_expected": 3})
 
 
 class Counts(InAFolder):

@@ -1,0 +1,43 @@
+"""A run's figures by module or by proof, which the page of the evidence shows beside each module."""
+
+import csv
+import re
+from pathlib import Path
+from typing import Callable, Dict
+
+PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) +(\S+).* s  (ok|FAILED)", re.M)
+MUTANTS = ("tried", "killed")
+PROOFS = ("runs", "as_expected")
+
+
+def mutants(path: Path) -> dict:
+    """By module, from a campaign's results.csv; nothing when the run did not come as far as writing it."""
+    found: dict = {}
+    if path.exists():
+        with path.open(newline="") as file:
+            for row in csv.DictReader(file):
+                figure = found.setdefault(row["module"], dict.fromkeys(MUTANTS, 0))
+                figure["tried"] += 1
+                figure["killed"] += row["how"] != "lived"
+    return found
+
+
+def proofs(log: str) -> dict:
+    """By proof, with its covers and seeded bugs, from what scripts/prove prints."""
+    found: dict = {}
+    for name, result in PROOF_RUN.findall(log):
+        figure = found.setdefault(name, dict.fromkeys(PROOFS, 0))
+        figure["runs"] += 1
+        figure["as_expected"] += result == "ok"
+    return found
+
+
+def _has(names) -> Callable[[object], bool]:
+    """Whether a record may hold it: integers with these names, by module or proof."""
+    return lambda value: isinstance(value, dict) and all(
+        isinstance(figure, dict) and set(figure) == set(names) and all(type(number) is int for number in figure.values())
+        for figure in value.values())
+
+
+FIELDS: Dict[str, tuple] = {"mutants": (_has(MUTANTS), "tried and killed by module"),
+                            "proofs": (_has(PROOFS), "runs and as_expected by proof")}
