@@ -109,8 +109,8 @@ class Page(unittest.TestCase):
 
     def test_a_proof_shows_its_newest_runs(self):
         module = next(row for row in gather(self.path)["modules"] if row["proof"])
-        older = run("part-proofs", begun="2025-01-31T23:59:59.999Z", proofs={module["proof"]: {"runs": 9, "as_expected": 9}})
-        newer = run("proof-x", kind="proof", proofs={module["proof"]: {"runs": 8, "as_expected": 7}})
+        older = run("proof-x", kind="proof", begun="2025-01-31T23:59:59.999Z", proofs={module["proof"]: {"runs": 9, "as_expected": 9}})
+        newer = run("part-proofs", proofs={module["proof"]: {"runs": 8, "as_expected": 7}})
         self.assertIn('<span class="bad">7 of 8</span>', self.cell(self.data(v1_0_0=[newer, older]), module["module"], 3))
         self.assertIn("not recorded", self.cell(self.data(v1_0_0=[run("part-unit")]), module["module"], 3))
 
