@@ -13,8 +13,7 @@ class TickFit {
   // `ahead`: ticks of the next portion with ticks, in the new density, that pass without a change of speed.
   void change_density(double ticks_per_clock_at_1_mm_s, double ahead);
 
-  // The whole tick at which a phase ends that ends at `exact` ticks in the plan. Stops and corners have a tick of their
-  // own.
+  // The whole end tick of a phase that ends at `exact` ticks in the plan. Stops and corners have a tick of their own.
   double end_tick(const Phase& phase, double exact) const;
   // Advances by a portion of `ticks`, which ends in the plan at `to` mm in the phase. `late`: ticks by which it ends
   // after that place. `through`: the phase continues after the portion.
