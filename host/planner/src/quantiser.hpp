@@ -91,7 +91,7 @@ class Quantiser {
   bool smooth_;
   bool classes_;
   bool slew_shifts_;
-  double full_hz_;  // of the card: clocks a second at full ratio
+  double full_hz_;  // of the card: clocks per second at full ratio
   TickScale scale_;
   std::unique_ptr<PieceShaper> shaper_;
   BlockTimes times_;

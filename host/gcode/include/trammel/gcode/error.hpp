@@ -33,7 +33,7 @@ enum class ErrorCode : std::uint16_t {
   kNotWhole = 23,
   kLineNumberNotFirst = 24,
   kNoSuchAxis = 25,
-  kTwoUsesOfAxisWords = 26,  // G28 or G92 beside a motion, motors off for single axes
+  kTwoUsesOfAxisWords = 26,  // G28 or G92 with a motion, motors off for single axes
   kUnusedWord = 27,          // P without G4, I without G2 or G3
   kMissingWord = 28,         // G4 without P, G92 without an axis
   kNoMotionMode = 29,
