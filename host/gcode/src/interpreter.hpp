@@ -59,7 +59,7 @@ class Interpreter final : public Predefined {
   void probed(const Coordinates& edge, const Coordinates& rest, bool tripped);
   // As probed(), under the assumption that the probe trips at its target.
   void assume_probed();
-  // Lines so far that depend on a probe that has not run.
+  // Number of lines so far that depend on a probe that has not run.
   std::size_t lines_on_probes() const { return lines_on_probes_; }
 
   Value numbered(int number) const override;

@@ -273,11 +273,11 @@ class Reader::Impl {
   bool has_words_ = false;   // a word has been read
   std::size_t dwells_by_p_ = 0;
   bool ended_ = false;
-  std::size_t ended_at_ = 0;  // line
+  std::size_t ended_at_ = 0;  // the line that ended the program
   bool awaits_probe_ = false;
   WordSet words_;
   LineMotions motions_;
-  std::size_t given_ = 0;  // of motions_
+  std::size_t given_ = 0;  // number of motions_ that next() has returned
   Problem problem_;
   std::optional<Error> error_;
   std::map<std::string, std::size_t> accepted_;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kShaperShare = 0.95;  // share of the shaper's fastest rate without a pause
 // One pulse less than the counters hold, as room for rounding.
 constexpr double kMaxPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
-constexpr double kMaxDwellTotal = 0x1p48;  // clocks of one G4
+constexpr double kMaxDwellTotal = 0x1p48;  // clocks per G4
 constexpr double kSoftLimitSlack = 1e-6;   // mm; far below a pulse, far above the rounding of sums
 constexpr double kMinWay = 2;              // pulses: a shorter path of X, Y and Z may have no step
 constexpr double kSameSpeed = 1 - 1e-6;    // share of the feed from which on it counts as reached
@@ -173,7 +173,7 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
 }
 
 bool BlockBuilder::set_targets(Block& block) {
-  unsigned moved = 0;  // axes, a bit each
+  unsigned moved = 0;  // bit n: axis n
   for (std::size_t axis = 0; axis < axis_count_; ++axis) {
     const double mm = motion_.target[axis];
     const double programmed = motion_.programmed[axis];

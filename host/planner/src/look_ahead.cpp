@@ -11,7 +11,7 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kTicksPerPulse = 128;    // steps even to 1/64
+constexpr double kTicksPerPulse = 128;    // makes steps even to 1/64
 constexpr double kMaxTicks = 0x1p38;      // of a block; a command has 40 bits, and a piece can span blocks
 constexpr double kMinTickRate = 0x1p-30;  // ticks per clock; four times the finest floor
 // Ticks per clock. Above this, the shapers have no slack for jitter, and holds are uneven.

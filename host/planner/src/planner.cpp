@@ -11,7 +11,7 @@
 namespace trammel::planner {
 namespace {
 
-constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks of one command
+constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks per command
 constexpr double kReached = 1 - 1e-4;  // share of the program's speed from which on it counts as reached
 
 SpeedLimit limit_of(const PathEntry& entry) {

@@ -54,7 +54,7 @@ class Quantiser {
   struct Place {
     bool moving = false;
     bool turns = false;       // began at rest: at a stop without a wait, or in mid path
-    std::uint64_t block = 0;  // in the ring
+    std::uint64_t block = 0;  // the block at this place, as an index into the ring
     double mm = 0;
     double base_mm = 0;           // a place with a known tick; the scale has not changed since
     std::uint64_t base_tick = 0;  // the tick at base_mm

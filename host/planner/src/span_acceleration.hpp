@@ -90,7 +90,7 @@ class SpanAcceleration {
   double at_rest_ = 0;
   double at_top_ = 0;
   double top_ = 0;
-  double jerk_ = 0;  // the least
+  double jerk_ = 0;  // the lowest at any speed
   Curve curve_;
   int steps_ = 1;
 };

@@ -44,7 +44,7 @@ double TickFit::end_tick(const Phase& phase, double exact) const {
 }
 
 void TickFit::advance(const Phase& phase, double to, double ticks, double late, bool through) {
-  constexpr double kSame = 1e-9;  // of a rate
+  constexpr double kSame = 1e-9;  // relative difference of rates that count as equal
   constexpr double kFar = 2;      // ticks: bounds the fit where blocks have more ticks than their length
   begin_ = end_;
   const double tick = 1 / (ticks_per_clock_at_1_mm_s_ * clock_hz_);

@@ -30,7 +30,7 @@ class TickFit {
   double ticks_per_clock_at_1_mm_s_ = 0;
   double begin_ = 0;
   double end_ = 0;
-  double ahead_ = 0;  // ticks
+  double ahead_ = 0;  // ticks to pass without a change of speed
   double lag_ = 0;    // ticks from the place where the plan has the rate `end_` to the place where the motion has it
 };
 

@@ -56,7 +56,7 @@ class TrapezoidPlan final : public SpeedPlan {
   std::array<Part, 2 * SpanAcceleration::kMaxSteps> parts_{};
   std::size_t count_parts_ = 0;
   std::array<Phase, 2 * SpanAcceleration::kMaxSteps + 2> phases_;
-  std::size_t made_ = 0;  // of phases_
+  std::size_t made_ = 0;  // number of valid phases_
   std::size_t given_ = 0;
 };
 
