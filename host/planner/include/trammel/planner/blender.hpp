@@ -1,4 +1,4 @@
-// G64 P: replaces corners by arcs that are tangent to both motions. Stands between reader and BlockBuilder: pulls from
+// G64 P: replaces corners by arcs that are tangent to both motions. Used between reader and BlockBuilder: pulls from
 // the reader and holds one motion. Not thread-safe. Computes with + - * / and square roots only, so that every host
 // gets the same result.
 //

@@ -26,7 +26,7 @@ struct CardLimits {
 // chords make helices. kEightDirections is the accumulator, in 8 directions if the card has them.
 enum class ArcsBy { kGenerator, kEightDirections, kAccumulator, kChords };
 
-// The card without the methods for arcs that precede `arcs`.
+// The card without the methods for arcs that precede `arcs`, and without 8 directions unless `arcs` asks for them.
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs);
 
 // The identification says only whether the card has outputs: `outputs` is then 16. run::configure() asks the card for
