@@ -10,15 +10,15 @@ namespace trammel::chart {
 namespace {
 
 // Pixels.
-constexpr double kLeft = 62;  // numbers and the label of y
+constexpr double kLeft = 62;  // for the numbers and the label of y
 constexpr double kRight = 16;
-constexpr double kBottom = 40;  // numbers and the label of x
+constexpr double kBottom = 40;  // for the numbers and the label of x
 constexpr double kTitle = 24;
 constexpr double kLegendRow = 17;
-constexpr double kLetter = 6.8;  // of 11 pixels, on average
-constexpr double kSample = 22;   // a legend's sample
-constexpr double kTickX = 74;    // between numbers, at least
-constexpr double kTickY = 34;
+constexpr double kLetter = 6.8;  // average width at a font size of 11 pixels
+constexpr double kSample = 22;   // width of the legend's sample of a series
+constexpr double kTickX = 74;    // least distance between numbers
+constexpr double kTickY = 34;    // least distance between numbers
 
 constexpr const char* kStyle =
     "<style>\n"
@@ -83,7 +83,7 @@ class Drawing {
   }
 
  private:
-  // Entries, row by row, as wide as the panel.
+  // Lays out the legend in rows up to the width of the panel.
   void lay_out_legend() {
     double used = 0;
     for (const Series& series : panel_.series) {
@@ -157,7 +157,7 @@ class Drawing {
     return out;
   }
 
-  // A point that is not shown interrupts the line.
+  // A point that is not shown (not finite, or outside the panel) interrupts the line.
   std::string polylines(const Series& series) const {
     std::string out;
     std::string points;
@@ -220,7 +220,8 @@ std::string grid_of(const std::vector<Panel>& panels, std::size_t columns, doubl
 }
 
 const char* colour(std::size_t index) {
-  // The first eight: Okabe and Ito, "Color Universal Design" (yellow, too pale for a line on white, is darkened).
+  // The first eight are from Okabe and Ito, "Color Universal Design"; yellow, too pale for a line on white, is
+  // darkened.
   static constexpr std::array<const char*, 10> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
                                                         "#56b4e9", "#000000", "#b8a800", "#8c564b", "#7f7f7f"};
   return kColours[index % kColours.size()];
@@ -243,7 +244,7 @@ std::string escaped(std::string_view text) {
         result += "&quot;";
         break;
       default:
-        // Other control characters than these three are no XML.
+        // XML allows no control characters except these three.
         if (static_cast<unsigned char>(c) >= ' ' || c == '\t' || c == '\n' || c == '\r') result += c;
     }
   }

@@ -8,7 +8,7 @@
 namespace trammel::chart {
 namespace {
 
-// 1, 2 or 5 times a power of ten, the least of them that is not below `value` > 0.
+// Smallest number of the form 1, 2 or 5 times a power of ten that is not below `value` > 0.
 double round_up(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -19,7 +19,7 @@ double round_up(double value) {
 
 double step_for(double span, std::size_t most) {
   double step = round_up(span / static_cast<double>(most));
-  // Ends included there may be one more than `most` intervals make.
+  // With both ends there may be one tick more than `most` intervals have.
   while (std::floor(span / step) + 1 > static_cast<double>(most)) step = round_up(step * 1.5);
   return step;
 }
@@ -35,7 +35,7 @@ std::string number(double value, double step) {
 
 std::vector<double> round_ticks(double low, double high, std::size_t most) {
   const double step = step_for(high - low, most);
-  // Whole multiples, so that no error adds up; a tick that misses an end by rounding alone is kept.
+  // Whole multiples, so that errors do not add up. A tick that misses an end only by rounding is kept.
   const double slack = 1e-9 * (high - low) / step;
   std::vector<double> ticks;
   const double last = std::floor(high / step + slack);
@@ -58,7 +58,7 @@ Scale::Scale(const Axis& axis, const std::vector<Series>& series, std::size_t in
   if (first) high_ = low_ = logarithmic_ ? 1 : 0;
   if (axis.low) low_ = logarithmic_ ? std::log10(*axis.low) : *axis.low;
   if (axis.high) high_ = logarithmic_ ? std::log10(*axis.high) : *axis.high;
-  // A single value, or none, stands in the middle of a unit.
+  // A single value, or no value, is in the middle of one unit.
   if (!(high_ - low_ > 1e-12 * std::max(1.0, std::fabs(high_)))) {
     low_ -= 0.5;
     high_ = low_ + 1;

@@ -1,4 +1,4 @@
-// The range of an axis, and how values become pixels along it.
+// The range of an axis, and the conversion of its values to pixels.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@ struct Tick {
 
 class Scale {
  public:
-  // The range of `axis`, else that of coordinate `index` of all points.
+  // The range that `axis` gives, or else that of coordinate `index` of all points.
   Scale(const Axis& axis, const std::vector<Series>& series, std::size_t index);
 
-  // From pixel `from`, where the range begins, to pixel `to`.
+  // Maps the range to the pixels from `from` to `to`.
   void place(double from, double to) {
     from_ = from;
     to_ = to;
@@ -28,15 +28,15 @@ class Scale {
   bool shows(double value) const;
 
   double span() const { return high_ - low_; }
-  // Makes the range so wide, its middle where it was.
+  // Sets the length of the range and keeps its middle.
   void widen(double span);
 
-  // At most `most` ticks with numbers of equal decimals.
+  // At most `most` ticks, whose numbers have the same number of decimals.
   std::vector<Tick> ticks(std::size_t most) const;
 
  private:
   bool logarithmic_;
-  double low_ = 0;  // of the logarithm to base 10 where logarithmic
+  double low_ = 0;  // of the logarithm to base 10 if logarithmic
   double high_ = 1;
   double from_ = 0;
   double to_ = 1;

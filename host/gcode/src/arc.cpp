@@ -13,7 +13,7 @@ constexpr double kRadiusSlack = 0.005;  // mm
 constexpr double kRadiusSlackRelative = 0.001;
 constexpr double kMaxRadiusSlack = 0.5;  // mm
 
-// Not std::hypot, whose last digit differs between libraries. Numbers of words are at most 1e12: no square overflows.
+// std::hypot differs in its last digit between libraries. Numbers of words are at most 1e12, so no square overflows.
 double distance(PlanePoint a, PlanePoint b) {
   const double x = a.x - b.x;
   const double y = a.y - b.y;
@@ -39,7 +39,7 @@ bool centre_from_radius(const ArcWords& words, PlanePoint& centre, Problem& prob
                        fmt::format("R is too small: the end point is {:.4f} mm away", chord));
   }
   const double height = std::sqrt(std::max(0.0, radius * radius - chord * chord / 4));
-  // Counter-clockwise arcs up to half a turn have their centre on the left of the chord.
+  // A counter-clockwise arc up to half a turn has its centre on the left of the chord.
   const double left = words.clockwise == (radius > 0) ? -height : height;
   centre = {words.start.x + dx / 2 - left * dy / chord, words.start.y + dy / 2 + left * dx / chord};
   return true;

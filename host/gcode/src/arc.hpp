@@ -12,7 +12,7 @@ struct PlanePoint {
   double y;
 };
 
-// An arc's words in mm, in the axes of its plane.
+// The words of an arc in mm, along the axes of its plane.
 struct ArcWords {
   PlanePoint start;
   PlanePoint end;
@@ -20,7 +20,7 @@ struct ArcWords {
   std::optional<double> centre_x;  // from the start, or absolute (G90.1): see `centre_absolute`
   std::optional<double> centre_y;
   bool centre_absolute;
-  std::optional<double> radius;  // negative: the arc of more than half a turn
+  std::optional<double> radius;  // negative: the arc is longer than half a turn
 };
 
 struct ArcCentre {
@@ -28,9 +28,9 @@ struct ArcCentre {
   bool full_circle;
 };
 
-// False, with a problem, when the words describe no arc. Start and end radius may differ by 0.005 mm or by 0.1 %,
-// whichever is more, and by 0.5 mm at most (Grbl's rule). Nothing but + - * / and square roots, which are the same on
-// every machine.
+// False, with a problem, if the words describe no arc. Start and end radius may differ by 0.005 mm or by 0.1 %,
+// whichever is more, but by 0.5 mm at most (Grbl's rule). Uses + - * / and square roots only, which are the same on
+// every host.
 bool find_centre(const ArcWords& words, ArcCentre& found, Problem& problem);
 
 }  // namespace trammel::gcode

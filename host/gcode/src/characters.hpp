@@ -1,4 +1,4 @@
-// Of ASCII alone, whatever the locale. Internal to the reader.
+// Classes of ASCII characters, independent of the locale. Internal to the reader.
 #pragma once
 
 namespace trammel::gcode {

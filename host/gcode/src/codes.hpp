@@ -1,4 +1,4 @@
-// G words by what they do, in tenths. Internal to the reader.
+// G codes by function, in tenths. Internal to the reader.
 #pragma once
 
 namespace trammel::gcode::code {
@@ -15,11 +15,11 @@ inline constexpr int kHome = 280;
 inline constexpr int kStoreHome = 281;
 inline constexpr int kSecondHome = 300;
 inline constexpr int kStoreSecondHome = 301;
-inline constexpr int kSkip = 310;              // as 383, for one line
-inline constexpr int kProbe = 382;             // towards, a miss is an error
-inline constexpr int kProbeQuietly = 383;      // towards
-inline constexpr int kProbeAway = 384;         // away, a miss is an error
-inline constexpr int kProbeAwayQuietly = 385;  // away
+inline constexpr int kSkip = 310;              // G31: as G38.3, for one line
+inline constexpr int kProbe = 382;             // towards the probe, a miss is an error
+inline constexpr int kProbeQuietly = 383;      // towards the probe
+inline constexpr int kProbeAway = 384;         // away from the probe, a miss is an error
+inline constexpr int kProbeAwayQuietly = 385;  // away from the probe
 inline constexpr int kToolLength = 430;
 inline constexpr int kToolOffsets = 431;
 inline constexpr int kLocalOrigin = 520;

@@ -6,11 +6,12 @@
 namespace trammel::gcode {
 namespace {
 
-// How far above the last depth the rapid back into the hole stops, and how far G73 backs out; LinuxCNC's, mm.
+// mm, as in LinuxCNC: distance above the last depth at which the rapid back into the hole ends, and by which G73 backs
+// out.
 constexpr double kPeckClearance = 0.254;
-constexpr double kSameLevel = 1e-9;  // mm: what sums of decimal fractions are off by
+constexpr double kSameLevel = 1e-9;  // mm: more than the rounding errors of sums of decimal fractions
 
-// The whole number of pecks before the last one.
+// The number of pecks before the last one.
 double pecks_before_last(const CycleHoles& holes) {
   return std::max(0.0, std::ceil((holes.retract - holes.bottom - kSameLevel) / holes.peck) - 1);
 }

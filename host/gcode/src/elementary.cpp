@@ -9,7 +9,7 @@
 namespace trammel::gcode {
 namespace {
 
-// ln 2 in two parts: the first has 21 zeros at its end, so that its products with exponents are exact.
+// ln 2 in two parts. The first ends in 21 zero bits, so that its products with exponents are exact.
 constexpr double kLn2High = 0x1.62e42fee00000p-1;
 constexpr double kLn2Low = 0x1.a39ef35793c76p-33;
 constexpr double kRootHalf = 0.7071067811865476;
@@ -24,7 +24,7 @@ double whole_power(double base, std::int64_t exponent) {
   return exponent < 0 ? 1 / result : result;
 }
 
-// Of a full turn: -180 < result <= 180, exact.
+// Reduced to one turn: -180 < result <= 180, exact.
 double reduced(double angle) { return std::remainder(angle, 360.0); }
 
 double radians(double degrees) { return degrees * (driver::kPi / 180); }
@@ -38,7 +38,7 @@ double exponential(double x) {
   if (x < kSmallest) return 0;
   const double twos = std::floor(x / (kLn2High + kLn2Low) + 0.5);
   const double rest = (x - twos * kLn2High) - twos * kLn2Low;
-  // |rest| <= 0.35: 17 terms of the series leave less than 1e-23.
+  // |rest| <= 0.35: 17 terms of the series leave an error below 1e-23.
   double sum = 1;
   for (int n = 17; n > 0; --n) sum = 1 + sum * rest / n;
   return std::ldexp(sum, static_cast<int>(twos));
@@ -54,7 +54,7 @@ double natural_logarithm(double x) {
   }
   const double s = (m - 1) / (m + 1);
   const double square = s * s;
-  double sum = 0;  // 1/3 s^2 + 1/5 s^4 + ...: 12 terms leave less than 1e-20
+  double sum = 0;  // 1/3 s^2 + 1/5 s^4 + ...: 12 terms leave an error below 1e-20
   for (int n = 12; n > 0; --n) sum = square * (sum + 1.0 / (2 * n + 1));
   return twos * kLn2High + (2 * s + (2 * s * sum + twos * kLn2Low));
 }

@@ -14,7 +14,7 @@
 namespace trammel::gcode {
 namespace {
 
-constexpr double kEqual = 1e-4;  // as LinuxCNC: EQ and NE
+constexpr double kEqual = 1e-4;  // as in LinuxCNC, for EQ and NE
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 double truth(bool holds) { return holds ? 1 : 0; }
@@ -24,7 +24,7 @@ bool wrong(Problem& problem, std::string message) { return problem.set(ErrorCode
 struct Function {
   std::string_view name;
   double (*of)(double);
-  const char* outside;  // what is wrong where the result is no number
+  const char* outside;  // message if the result is not a number
 };
 
 bool has_angle(double x) { return std::abs(x) <= 1; }
@@ -50,7 +50,7 @@ constexpr Function kFunctions[] = {
     {"tan", tangent, "TAN of a right angle"},
 };
 
-// A function's name and a bracket.
+// Whether a function's name and a bracket begin here.
 bool starts_function(std::string_view text, std::string_view name) {
   if (text.size() <= name.size()) return false;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -101,7 +101,7 @@ bool ExpressionReader::malformed(Problem& problem) const {
 
 bool ExpressionReader::value(Value& value, Problem& problem) { return real(value, problem); }
 
-// Values that are not known yet cannot be wrong.
+// A value that a probe decides cannot be wrong yet.
 bool ExpressionReader::real(Value& value, Problem& problem) {
   if (depth_ == kDeepest) return wrong(problem, fmt::format("an expression nested deeper than {}", kDeepest));
   ++depth_;
@@ -143,7 +143,7 @@ bool ExpressionReader::number(Value& value, Problem& problem) {
   if (digits == 0) return malformed(problem);
   const auto result = std::from_chars(first, last, value.value, std::chars_format::fixed);
   if (result.ec == std::errc::result_out_of_range) {
-    // So small that it is no double: 0 is the nearest.
+    // Too small for a double: 0 is the nearest.
     const std::string_view text(first, static_cast<std::size_t>(last - first));
     if (text.substr(0, text.find('.')).find_first_not_of('0') != std::string_view::npos) {
       return problem.set(ErrorCode::kNumberOutOfRange, fmt::format("number out of range in '{}'", quote(text)));
@@ -261,8 +261,8 @@ bool ExpressionReader::apply(Operator one, Value& left, const Value& right, Prob
   return true;
 }
 
-// A stack of values, each with the operator behind it, weaker to the right of stronger ones never: at most one for
-// each strength.
+// Keeps a stack of values, each with the operator after it. Each operator on the stack is stronger than the one before
+// it, so there is at most one per strength.
 bool ExpressionReader::bracket(Value& value, Problem& problem) {
   ++at_;
   Value values[6];
@@ -328,7 +328,7 @@ bool ExpressionReader::exists(Value& value, Problem& problem) {
   return take(']') || malformed(problem);
 }
 
-// To name_, from the '<' to behind the '>'.
+// Reads the name into name_, from the '<' to the '>'.
 bool ExpressionReader::name(Problem& problem) {
   ++at_;
   name_size_ = 0;
@@ -363,7 +363,7 @@ bool ExpressionReader::assignment(Parameters& to, Problem& problem) {
   };
   if (peek() == '<') {
     if (!name(problem)) return false;
-    std::array<char, kLongestName> left{};  // the value may have names of its own
+    std::array<char, kLongestName> left{};  // a copy: the value may contain names
     std::copy_n(name_, name_size_, left.begin());
     return set(std::string_view(left.data(), name_size_));
   }

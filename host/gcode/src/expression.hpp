@@ -1,7 +1,7 @@
-// Values of words: numbers, #parameters, [expressions] and functions, as LinuxCNC has them. Internal to the reader.
+// Values of words as in LinuxCNC: numbers, #parameters, [expressions] and functions. Internal to the reader.
 //
 //   value: [+-] number | #number | #<name> | [ value { operator value } ] | FUNCTION[...] | ATAN[...]/[...]
-//   operators, from the strongest: **; * / MOD; + -; EQ NE GT GE LT LE; AND OR XOR; equals from left to right
+//   operators, from the strongest: **; * / MOD; + -; EQ NE GT GE LT LE; AND OR XOR; equal strength: left to right
 //   functions: ABS ACOS ASIN ATAN COS EXISTS EXP FIX FUP LN ROUND SIN SQRT TAN; angles in degrees
 #pragma once
 
@@ -13,23 +13,23 @@
 
 namespace trammel::gcode {
 
-// Of what no sum or square leaves the range of a double.
+// Sums and squares of values up to this stay in the range of a double.
 inline constexpr double kLargestValue = 1e12;
 
-// Whether a value that is no plain number begins here: a parameter, a bracket, a function, perhaps signed.
+// Whether a value other than a plain number begins here: a parameter, a bracket or a function, perhaps with a sign.
 bool starts_expression(std::string_view text);
 
 class ExpressionReader {
  public:
-  // From `at` on; both must outlive the reader.
+  // Reads `line` from `at` on. Line and parameters must outlive the reader.
   ExpressionReader(std::string_view line, std::size_t at, const Parameters& parameters)
       : line_(line), at_(at), parameters_(parameters) {}
 
-  // Finite, kLargestValue at most.
+  // The result is finite and at most kLargestValue.
   bool value(Value& value, Problem& problem);
-  // #number = value, or #<name> = value, at the '#'.
+  // Reads `#number = value` or `#<name> = value`, starting at the '#'.
   bool assignment(Parameters& to, Problem& problem);
-  // Behind what was read.
+  // Position after the text that was read.
   std::size_t at() const { return at_; }
 
  private:

@@ -12,9 +12,10 @@
 namespace trammel::gcode {
 namespace {
 
-constexpr double kStill = 1e-9;  // mm: what is left of a sum that should be 0
+constexpr double kStill = 1e-9;  // mm: below this, a sum that should be 0 counts as 0
 
-// The least max_velocity of a machine file, 0.001 mm/s. Less is a slip of the pen: 10 mm would take hours.
+// The smallest max_velocity of a machine file is 0.001 mm/s. A feed below that is a typing error: 10 mm would take
+// hours.
 constexpr double kMinFeed = 0.06;  // mm/min, or degrees/min
 // Under G93: one motion takes at most 1,000 minutes.
 constexpr double kMinInverseTime = 0.001;  // 1/min
@@ -33,7 +34,7 @@ bool is_probe(std::optional<int> word) {
   return word && (*word == code::kSkip || (*word >= code::kProbe && *word <= code::kProbeAwayQuietly));
 }
 
-// Errors of values, which another outcome of a probe would change.
+// Errors of values. Another result of a probe could remove them.
 bool is_of_values(ErrorCode code) {
   switch (code) {
     case ErrorCode::kFeedTooSmall:
@@ -58,7 +59,7 @@ Interpreter::Interpreter(const machine::Machine& machine, const Coordinates& sta
   here_.at = start;
 }
 
-// The order of execution is RS274/NGC's.
+// The order of execution is that of RS274/NGC.
 Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line, LineMotions& motions,
                                           Problem& problem) {
   line_ = line;
@@ -83,7 +84,7 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
     return Outcome::kEnded;
   }
   if (stopping) {
-    stop(motions, 0);  // M0, M1, without anybody to wait for
+    stop(motions, 0);  // M0, M1; there is no operator to wait for here
   }
   return Outcome::kGoesOn;
 }
@@ -136,7 +137,8 @@ bool Interpreter::act(const Context& context) {
     case code::kLocalOrigin:
       return set_origin(context, action == code::kLocalOrigin);
     case code::kDwell:
-      stop(context.motions, std::max(0.0, *context.words.dwell()));  // below 0 only before a probe tells it
+      // Can be below 0 only as long as a probe decides it.
+      stop(context.motions, std::max(0.0, *context.words.dwell()));
       break;
     case code::kStoreHome:
     case code::kStoreSecondHome:
@@ -169,8 +171,8 @@ bool Interpreter::depends(const WordSet& words) const {
   return false;
 }
 
-// A line whose values depend on a probe is checked when it is reached: until then it moves nothing, and where it would
-// end is not known. Nor are the results of a probe, where the line is one.
+// A line whose values depend on a probe is checked when it is reached. Until then it moves nothing, its end point is
+// not known, and, if the line is a probe, its results are not known either.
 bool Interpreter::defer(const Context& context, std::size_t motions_before) {
   if (!depends(context.words) || !is_of_values(context.problem.code)) {
     return false;
@@ -207,13 +209,13 @@ bool Interpreter::switches(int number) const {
     case 63:
     case 64:
     case 65:
-      return true;  // or it is refused
+      return true;  // always, because others are refused
     default:
       return false;
   }
 }
 
-// Before the line's motion, as spindle and coolant are switched in RS274/NGC.
+// Before the line's motion; RS274/NGC switches spindle and coolant then.
 void Interpreter::switch_outputs(const Context& context) {
   const machine::MachineOutputs& outputs = machine_.outputs;
   std::uint16_t set = 0;
@@ -231,7 +233,7 @@ void Interpreter::switch_outputs(const Context& context) {
   change_outputs(set, clear, context.motions);
 }
 
-// LinuxCNC's outputs by number: in their place on the path, or behind a stop.
+// LinuxCNC's numbered outputs: switched in place on the path, or after a stop.
 bool Interpreter::switch_numbered(const Context& context) {
   const int word = *context.words.code(Group::kNumbered);
   const double number = *context.words.letter('P');
@@ -249,7 +251,7 @@ bool Interpreter::switch_numbered(const Context& context) {
   return true;
 }
 
-// A spindle takes its time to a new speed, and cutting waits for it.
+// A spindle needs time to reach a new speed. Cutting waits for it.
 void Interpreter::spin_up(LineMotions& motions) {
   const machine::MachineOutputs& outputs = machine_.outputs;
   if (modes_.spindle == kSpindleOff) return;
@@ -258,8 +260,8 @@ void Interpreter::spin_up(LineMotions& motions) {
   if (awaits || seconds > 0) stop(motions, seconds).awaits_spindle = awaits;
 }
 
-// A laser is on in a motion at feed, never in a traverse or a probe; standing it may be where the next one would be at
-// feed. As Grbl 1.1 has it (https://github.com/gnea/grbl, doc/markdown/laser_mode.md).
+// A laser burns in motions at feed, never in a traverse or a probe. At rest it may burn if the motion mode is one at
+// feed. This is the rule of Grbl 1.1 (https://github.com/gnea/grbl, doc/markdown/laser_mode.md).
 bool Interpreter::laser_may_burn(MotionKind kind) const {
   switch (kind) {
     case MotionKind::kLine:
@@ -359,7 +361,7 @@ bool Interpreter::straight(const Context& context, bool rapid) {
   return true;
 }
 
-// The motion has its target.
+// Precondition: the motion has its target.
 void Interpreter::arrive(const Place& target, Motion& motion) {
   motion.path_control = modes_.path_control;
   motion.tolerance = modes_.tolerance;
@@ -376,7 +378,7 @@ double Interpreter::to_mm(std::size_t axis, double value) const {
   return modes_.inches && !is_rotary(axis) ? value * kMmPerInch : value;
 }
 
-// A letter's value in mm along an axis; 0 where it is missing.
+// Value of a letter in mm along an axis; 0 if the line does not have it.
 Value Interpreter::word(const WordSet& words, char letter, std::size_t axis) const {
   return {to_mm(axis, words.letter(letter).value_or(0)), words.later(letter)};
 }
@@ -405,7 +407,7 @@ bool Interpreter::target_of(const Context& context, Place& target) const {
   return true;
 }
 
-// Speed or duration of a motion with feed. A move of rotary axes alone is in degrees a minute, whatever the units.
+// Speed or duration of a motion with feed. The feed of rotary axes alone is in degrees per minute, whatever the units.
 bool Interpreter::set_speed(const Context& context, Motion& motion) const {
   Problem& problem = context.problem;
   if (modes_.inverse_time && !context.words.letter('F')) {

@@ -17,11 +17,11 @@
 
 namespace trammel::gcode {
 
-// The motions of one line. Only drilling cycles and splines make many: then memory grows, once.
+// The motions of one line. Only drilling cycles and splines make many; the memory then grows once.
 class LineMotions {
  public:
   void clear() { motions_.clear(); }
-  // A motion to be filled in, until the next call.
+  // Adds a motion to be filled in; the reference is valid until the next call.
   Motion& add(MotionKind kind, std::size_t line) {
     Motion& motion = motions_.emplace_back();
     motion.kind = kind;
@@ -41,25 +41,25 @@ class Interpreter final : public Predefined {
  public:
   Interpreter(const machine::Machine& machine, const Coordinates& start);
 
-  // As ReaderOptions says.
+  // See ReaderOptions::spindle and spindle_speed.
   void begin_spindle(int code, double speed) {
     modes_.spindle = code;
     modes_.spindle_speed = speed;
   }
 
   enum class Outcome { kGoesOn, kEnded, kFailed };
-  // Appends the line's motions. After a failure, of which `problem` tells, the state means nothing.
+  // Appends the line's motions. After a failure, which `problem` describes, the state is undefined.
   Outcome execute(const WordSet& words, std::size_t line, LineMotions& motions, Problem& problem);
   // Appends the motion kEnd.
   void end(std::size_t line, LineMotions& motions);
-  // Whether a word of the groups spindle and coolant switches an output of this machine.
+  // Whether a word of the groups spindle, coolant or numbered outputs switches an output of this machine.
   bool switches(int number) const;
 
-  // Where the last probe ended and what it met, machine coordinates; `rest` is where the machine stands.
+  // The end of the last probe, machine coordinates: `edge`, where the input changed, and `rest`, where the machine is.
   void probed(const Coordinates& edge, const Coordinates& rest, bool tripped);
-  // The same, at its target and not known yet.
+  // As probed(), under the assumption that the probe trips at its target.
   void assume_probed();
-  // Lines so far that depend on a probe that has not run.
+  // Number of lines so far that depend on a probe that has not run.
   std::size_t lines_on_probes() const { return lines_on_probes_; }
 
   Value numbered(int number) const override;
@@ -81,19 +81,19 @@ class Interpreter final : public Predefined {
     std::size_t second;
     std::size_t normal;
   };
-  // What a line of a cycle leaves to the next: mm, from the program's zero or as increments.
+  // The words of a cycle that hold for its next lines: mm, from the program's zero or as increments.
   struct Sticky {
     double retract = 0;
     double bottom = 0;
     double peck = 0;
     double seconds = 0;
     bool later = false;
-    // Of a series of cycles: the level before its first hole and the program's zero then, machine coordinates.
+    // For a series of cycles, machine coordinates: level before the first hole, and the program's zero at that time.
     double start = 0;
     double zero = 0;
     bool start_later = false;
   };
-  // Where a line's motions and problems go.
+  // The inputs and results of one line.
   struct Context {
     const WordSet& words;
     LineMotions& motions;
@@ -148,9 +148,9 @@ class Interpreter final : public Predefined {
   Tools tools_;
   Sticky sticky_;
   int cycle_plane_ = 0;
-  std::optional<std::array<double, 2>> spline_end_;  // P and Q, mm, where the last motion was a G5
+  std::optional<std::array<double, 2>> spline_end_;  // P and Q, mm, if the last motion was a G5
   Coordinates probe_target_{};
-  unsigned probe_axes_ = 0;  // that it moves
+  unsigned probe_axes_ = 0;  // axes that the probe moves, bit n: axis n
   std::array<Value, kParameterAxes> probe_results_{};
   Value probe_success_;
   std::size_t lines_on_probes_ = 0;

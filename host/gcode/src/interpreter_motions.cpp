@@ -1,4 +1,4 @@
-// Curves, drilling cycles and probing: what a line's motion word makes of it.
+// The motion words: curves, drilling cycles and probing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ bool Interpreter::arc(const Context& context, bool clockwise) {
   return true;
 }
 
-// The motion has its target and the axes of its plane.
+// Precondition: the motion has its target and the axes of its plane.
 bool Interpreter::arc_geometry(const Context& context, const Plane& plane, Motion& motion) const {
   const std::size_t x = motion.axis_x;
   const std::size_t y = motion.axis_y;
@@ -90,7 +90,7 @@ bool Interpreter::arc_geometry(const Context& context, const Plane& plane, Motio
   return true;
 }
 
-// P, where neither G4 nor G64 takes it: all turns, the last one perhaps not a whole one.
+// P, if neither G4 nor G64 takes it: the number of turns, of which the last one may be incomplete.
 bool Interpreter::set_turns(const Context& context, Motion& motion) const {
   constexpr double kMaxTurns = 10'000;
   const WordSet& words = context.words;
@@ -107,7 +107,7 @@ bool Interpreter::set_turns(const Context& context, Motion& motion) const {
   return true;
 }
 
-// From the start to the first control point, and from the end to the second, mm.
+// `first`: control point from the start; `second`: control point from the end; mm.
 bool Interpreter::spline_controls(const Context& context, std::array<double, 2>& first, std::array<double, 2>& second) {
   const auto& [words, motions, problem] = context;
   const bool i = words.letter('I').has_value();
@@ -165,13 +165,13 @@ bool Interpreter::spline(const Context& context) {
     motion.target = to.at;
     if (!set_speed(context, motion)) return false;
     arrive(to, motion);
-    if (n < lines) motion.path_control = PathControl::kContinuous;  // no corners of the program's
+    if (n < lines) motion.path_control = PathControl::kContinuous;  // the program has no corner there
   }
   if (modes_.motion == code::kSpline) spline_end_ = second;
   return true;
 }
 
-// Appends motions of a cycle.
+// Appends the motions of a cycle.
 class Interpreter::CycleMotions final : public CycleSink {
  public:
   CycleMotions(Interpreter& in, const Context& context, const PlaneAxes& axes, double seconds)
@@ -202,7 +202,7 @@ class Interpreter::CycleMotions final : public CycleSink {
     motion.target = target.at;
     good_ = how != CycleStep::kFeed || in_.set_speed(context_, motion);
     in_.arrive(target, motion);
-    // Holes keep their corners.
+    // The corners of a cycle are not blended.
     if (motion.path_control == PathControl::kContinuous) motion.path_control = PathControl::kExactPath;
     motion.tolerance = 0;
   }
@@ -231,7 +231,7 @@ bool Interpreter::check_cycle(const Context& context, const PlaneAxes& axes) con
   return true;
 }
 
-// `fresh`: the first line of this cycle.
+// `fresh`: this is the first line of the cycle.
 bool Interpreter::set_sticky(const Context& context, int code, const PlaneAxes& axes, bool fresh) {
   const auto& [words, motions, problem] = context;
   const char* const missing = !words.has_axis(axes.normal)               ? "the bottom of its holes"
@@ -257,13 +257,13 @@ void Interpreter::begin_series(std::size_t normal) {
   sticky_.start_later = here_.is_later(normal) || offsets_.later(normal);
 }
 
-// From where the tool stands; `target` is the first hole.
+// The holes of a line, from the present position; `target` is the first hole.
 CycleHoles Interpreter::holes_to(const Place& target, int code, const PlaneAxes& axes, double repeats) const {
   CycleHoles holes;
   holes.code = code;
   holes.start = here_.at[axes.normal];
   const double zero = offsets_.total(axes.normal);
-  const double start = sticky_.start + (zero - sticky_.zero);  // keeps its coordinate when an offset changes
+  const double start = sticky_.start + (zero - sticky_.zero);  // it keeps its coordinate when an offset changes
   holes.retract = (modes_.absolute ? zero : start) + sticky_.retract;
   holes.bottom = (modes_.absolute ? zero : holes.retract) + sticky_.bottom;
   holes.clear = modes_.retract_to_start ? std::max(start, holes.retract) : holes.retract;
@@ -339,7 +339,7 @@ bool Interpreter::probe(const Context& context) {
   motion.probe_away = code == code::kProbeAway || code == code::kProbeAwayQuietly;
   motion.probe_must_trip = code == code::kProbe || code == code::kProbeAway;
   if (!set_speed(context, motion)) return false;
-  if (code == code::kSkip) modes_.motion.reset();  // its word counts for one line
+  if (code == code::kSkip) modes_.motion.reset();  // G31 counts for one line
   motion.later = static_cast<std::uint8_t>(target.later);
   probe_target_ = target.at;
   probe_axes_ = here_.later;
@@ -349,7 +349,7 @@ bool Interpreter::probe(const Context& context) {
   return true;
 }
 
-// Results are program coordinates in the units of the line, as LinuxCNC has them.
+// Results are program coordinates in the units of the line, as in LinuxCNC.
 void Interpreter::probed(const Coordinates& edge, const Coordinates& rest, bool tripped) {
   here_ = {};
   here_.at = rest;

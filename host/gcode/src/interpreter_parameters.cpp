@@ -1,4 +1,4 @@
-// What programs can read of the state: LinuxCNC's numbers and names.
+// The parts of the state that programs can read, with LinuxCNC's numbers and names.
 #include <iterator>
 
 #include "interpreter.hpp"
@@ -12,7 +12,7 @@ constexpr int kTool = 5400;
 constexpr int kToolOffsets = 5401;
 constexpr int kPosition = 5420;
 
-// The letter of "_x" and so on, 0 to 8; -1 for other names.
+// Index 0 to 8 of the axis letter in "_x" and so on; -1 for other names.
 int axis_name(std::string_view name) {
   constexpr std::string_view kNames = "xyzabcuvw";
   if (name.size() != 2 || name[0] != '_') return -1;
@@ -24,7 +24,7 @@ Value flag(bool holds) { return {holds ? 1.0 : 0.0, false}; }
 
 }  // namespace
 
-// Program coordinate of a machine coordinate, in the program's units.
+// A machine coordinate as a program coordinate, in the program's units.
 double Interpreter::to_program(std::size_t axis, double machine) const {
   const double mm = machine - offsets_.total(axis);
   return modes_.inches && !is_rotary(axis) ? mm / kMmPerInch : mm;

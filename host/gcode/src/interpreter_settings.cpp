@@ -1,4 +1,4 @@
-// What a line sets: homes, coordinate systems, the origin.
+// The settings of a line: homes, coordinate systems, the origin.
 #include <fmt/format.h>
 
 #include "codes.hpp"
@@ -7,8 +7,8 @@
 
 namespace trammel::gcode {
 
-// Through the programmed point to the home position of the axes named; without axes: of all but the extruder, whose
-// position has no home.
+// G28 and G30: moves through the programmed point to the home position of the named axes. Without axis letters it moves
+// all axes but the extruder, whose position has no home.
 bool Interpreter::go_home(const Context& context, bool second) {
   const unsigned named = context.words.axes() | context.words.bare_axes();
   const bool all = named == 0;
@@ -74,8 +74,8 @@ bool Interpreter::set_system(const Context& context) {
   return true;
 }
 
-// G92: from now on the point where the machine stands has the coordinates given. G52 (`local`): from now on the
-// program's zero lies there in the coordinate system. Both are one offset, as LinuxCNC has them.
+// G92: the present point of the machine gets the given coordinates. G52 (`local`): the program's zero gets the given
+// coordinates in the coordinate system. As in LinuxCNC, both set the same offset.
 bool Interpreter::set_origin(const Context& context, bool local) {
   const WordSet& words = context.words;
   if (!words.has_axis_words()) {

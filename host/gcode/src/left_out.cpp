@@ -15,7 +15,7 @@ std::string_view without_blanks(std::string_view text) {
   return text;
 }
 
-// A code in tenths, and the text behind it; -1 where there is none.
+// Reads a code in tenths and removes it from the text; -1 if there is none.
 int code_at(std::string_view& text) {
   constexpr int kLargest = 100'000;
   int tenths = 0;
@@ -32,7 +32,7 @@ int code_at(std::string_view& text) {
   return tenths;
 }
 
-// The word that begins the line, and the text behind it; tenths of -1 where none does.
+// Reads the word at the beginning of the line and removes it; `tenths` is -1 if there is none.
 CodeWord word_at(std::string_view& line) {
   const char letter = line.empty() ? ' ' : upper(line.front());
   if (letter != 'M' && letter != 'G') return {letter, -1};
@@ -40,13 +40,13 @@ CodeWord word_at(std::string_view& line) {
   return {letter, code_at(line)};
 }
 
-// Of a text that begins with a digit; G4 and G04 are alike.
+// Of a text that begins with a digit. G4 and G04 give the same.
 std::size_t first_two_digits(std::string_view text) {
   const auto first = static_cast<std::size_t>(text[0] - '0');
   return text.size() > 1 && is_digit(text[1]) ? first * 10 + static_cast<std::size_t>(text[1] - '0') : first;
 }
 
-// The line's number.
+// The line without its line number.
 std::string_view without_number(std::string_view line) {
   if (line.empty() || upper(line.front()) != 'N') return line;
   std::string_view rest = without_blanks(line.substr(1));
@@ -61,7 +61,7 @@ bool has_full_percent(std::string_view text) {
   return false;
 }
 
-// Whether a word's treatment leaves out a line with `rest` behind the word.
+// Whether the treatment of a word leaves out its line; `rest` is the text after the word.
 bool leaves_out(Treatment treatment, std::string_view rest, bool for_printers) {
   const std::string_view words = rest.substr(0, rest.find_first_of("(;"));
   switch (treatment) {
@@ -97,7 +97,7 @@ LeftOut::LeftOut(const std::vector<CodeWord>& more) {
   }
 }
 
-// Few lines with a G word are left out, and most lines of most programs have one: a look at two digits tells.
+// A fast test of two digits: most lines of most programs begin with a G word, and few of those are left out.
 bool LeftOut::may_begin(std::string_view line) const {
   const char letter = line.empty() ? ' ' : upper(line.front());
   if (letter != 'G') return letter == 'M' || letter == 'N';
@@ -133,7 +133,8 @@ std::string LeftOut::unknown(std::string_view line) const {
   return known || !why_not_left_out(word).empty() ? std::string() : name_of(word.letter, word.tenths);
 }
 
-// Words of any kind, also without numbers and with texts in quotes; not what moves.
+// Refuses G and M words after the first word. Allows other words of any kind, also without numbers, and texts in
+// quotes.
 bool LeftOut::look_behind(std::string_view rest, const Entry& entry, Problem& problem) {
   if (entry.treatment == Treatment::kText) return true;
   bool quoted = false;

@@ -1,5 +1,5 @@
-// Lines for hardware that the card does not have: heaters, fans, displays, limits of a printer's firmware; and those
-// that the user names. Such a line begins with its word, and nothing else of it is read. Internal to the reader.
+// Lines for hardware that the card does not have (heaters, fans, displays, limits of a printer's firmware), and lines
+// that the user names. Such a line begins with a word of the table; nothing else on it is read. Internal to the reader.
 #pragma once
 
 #include <bitset>
@@ -18,18 +18,18 @@ std::string name_of(char letter, int tenths);
 
 class LeftOut {
  public:
-  // `more`: further words.
+  // `more`: words in addition to the table.
   explicit LeftOut(const std::vector<CodeWord>& more);
 
-  // Whether the line (without blanks before it) is such a line; `name` is then its word, until the next call. With a
-  // problem where it has more G or M words: these would be lost.
+  // Whether the line, given without blanks before it, is such a line; `name` is then its word, valid until the next
+  // call. Sets a problem if the line has more G or M words, because these would be lost.
   bool find(std::string_view line, std::string_view& name, Problem& problem);
-  // Of the last line that find() has found: there was a problem.
+  // Whether find() set a problem for the last line that it found.
   bool failed() const { return failed_; }
   // Whether the program is for a printer's firmware: find() has found a line, or the program has words for an extruder.
   bool for_printers() const { return for_printers_; }
   void set_for_printers() { for_printers_ = true; }
-  // The word that begins a line and that is unknown, where `more` could name it; else empty.
+  // The word at the beginning of the line if it is unknown and `more` may name it; else empty.
   std::string unknown(std::string_view line) const;
 
  private:
@@ -48,7 +48,7 @@ class LeftOut {
   bool for_printers_ = false;
 };
 
-// To a list of words: those that are always left out.
+// Adds the words whose lines are always left out.
 void add_left_out(std::vector<std::string>& words);
 
 }  // namespace trammel::gcode

@@ -12,7 +12,7 @@
 namespace trammel::gcode {
 namespace {
 
-// Index of the first `c` in [from, to), `to` where there is none.
+// Index of the first `c` in [from, to); `to` if there is none.
 std::size_t find(const char* buffer, std::size_t from, std::size_t to, char c) {
   const void* found = to > from ? std::memchr(buffer + from, c, to - from) : nullptr;
   return found != nullptr ? static_cast<std::size_t>(static_cast<const char*>(found) - buffer) : to;
@@ -33,7 +33,7 @@ void wait_for_bytes(int descriptor, const std::function<void()>& meanwhile) {
 ChunkedLines::ChunkedLines(std::string name, std::size_t chunk)
     : name_(std::move(name)), chunk_(chunk), buffer_(new char[kLongestLine + 1 + chunk]) {}
 
-// More bytes behind those not given yet; false when there are no more.
+// Reads more bytes behind those not given yet; false if there are no more.
 bool ChunkedLines::refill() {
   if (at_end_) {
     return false;
@@ -64,7 +64,7 @@ bool ChunkedLines::next(std::string_view& line) {
     const std::size_t end = find(buffer_.get(), searched, line_feed_, '\r');
     const std::size_t size = end - begin_;
     if (end == end_ && size <= kLongestLine) {
-      // What was searched moves to the front with the rest.
+      // refill() moves the part already searched to the front.
       if (refill()) {
         searched = size;
         continue;

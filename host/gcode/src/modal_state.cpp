@@ -23,7 +23,7 @@ void ModalState::set_path_control(const WordSet& words) {
                  : *control == 611 ? PathControl::kExactStop
                                    : PathControl::kContinuous;
   const std::optional<double> given = words.letter('P');
-  // Below 0 only before a probe tells it.
+  // Can be below 0 only as long as a probe decides it.
   tolerance = path_control == PathControl::kContinuous && given ? std::max(0.0, *given) * mm_per_unit() : 0;
 }
 

@@ -1,4 +1,4 @@
-// What holds from one line of a program to the next, positions and offsets aside. Internal to the reader.
+// The modes that stay in force from one line to the next, without positions and offsets. Internal to the reader.
 #pragma once
 
 #include <optional>
@@ -11,21 +11,21 @@ namespace trammel::gcode {
 inline constexpr double kMmPerInch = 25.4;
 
 struct ModalState {
-  // Modes of a line that has more than axis words, a motion word and F; the motion word aside.
+  // Sets the modes of a line that has more than axis words, a motion word and F. The motion word is not set here.
   void set(const WordSet& words);
-  // F and what F means.
+  // Sets F and the meaning of F.
   void set_feed(const WordSet& words);
 
   double mm_per_unit() const { return inches ? kMmPerInch : 1; }
 
-  std::optional<int> motion;  // code in tenths; none under G80
+  std::optional<int> motion;  // code in tenths; empty under G80
   int plane = 170;
   bool inches = false;
   bool absolute = true;
-  std::optional<bool> extruder_absolute;  // none until M82 or M83
+  std::optional<bool> extruder_absolute;  // empty until M82 or M83
   bool centre_absolute = false;
   bool inverse_time = false;
-  std::optional<double> feed;  // as written, units or 1 a minute
+  std::optional<double> feed;  // as written: units per minute, or 1/minute under G93
   bool feed_in_inches = false;
   bool feed_later = false;  // depends on a probe that has not run yet
   PathControl path_control = PathControl::kContinuous;

@@ -1,5 +1,5 @@
-// Where a program's coordinates lie on the machine: coordinate systems, G92, tool length, and the places that G28 and
-// G30 go to. Internal to the reader. Machine coordinates in mm, degrees for A, B and C.
+// The position of a program's coordinates on the machine: coordinate systems, G92, tool length, and the targets of G28
+// and G30. Internal to the reader. Machine coordinates in mm, degrees for A, B and C.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace trammel::gcode {
 
-// A coordinate of each axis; those with a bit in `later` depend on a probe that has not run yet (see Value).
+// One coordinate per axis; those with a bit in `later` depend on a probe that has not run yet (see Value).
 struct Place {
   Coordinates at{};
   unsigned later = 0;
@@ -42,7 +42,7 @@ class Offsets {
     systems_[system].set(axis, value.value, value.later);
     any_later_ = any_later_ || value.later;
   }
-  // So that `here` has the coordinate `value` in the system.
+  // Sets the zero of the system such that `here` has the coordinate `value` in it.
   void set_system_at(std::size_t system, std::size_t axis, const Place& here, const Value& value);
 
   // G92: `here` gets the coordinate `value`.
@@ -51,7 +51,7 @@ class Offsets {
     shift_.set(axis, value.value, value.later);
     any_later_ = any_later_ || value.later;
   }
-  void shift_on() { shifted_ = true; }    // G92.3, and G92 and G52 with what it did not name
+  void shift_on() { shifted_ = true; }    // G92.3; also G92 and G52, for the axes they do not name
   void shift_off() { shifted_ = false; }  // G92.2
   void shift_clear();                     // G92.1
 
@@ -65,9 +65,9 @@ class Offsets {
   const Place& home(bool second) const { return second ? second_home_ : home_; }
   void set_home(bool second, const Place& here) { (second ? second_home_ : home_) = here; }
 
-  // As the parameters 5161 .. 5389 tell it; none for other numbers.
+  // Value of one of the parameters 5161 .. 5389; empty for other numbers.
   std::optional<Value> parameter(int number) const;
-  // All of these that are not 0, and before a program what they were.
+  // collect(): those of them that are not 0. preset(): values before the program.
   void collect(std::map<int, double>& numbers) const;
   void preset(int number, double value);
 
@@ -77,19 +77,19 @@ class Offsets {
   std::size_t system_ = 0;
   Place shift_;
   bool shifted_ = false;
-  bool any_later_ = false;  // or was
+  bool any_later_ = false;  // an offset depends on a probe, or did so before
   Place tool_;
   Place home_;
   Place second_home_;
 
   bool depends(std::size_t axis) const;
-  // The place that a number belongs to, and the axis; no place for other numbers, no axis (kMaxAxes) where the machine
-  // lacks it.
+  // The place that a parameter number belongs to (null for other numbers) and its axis (kMaxAxes if the machine lacks
+  // it).
   template <class Self>
   static auto place_of(Self& self, int number, std::size_t& axis) -> decltype(&self.home_);
 };
 
-// The axis of the n-th letter of X Y Z A B C U V W, as parameters count them, where the machine has it.
+// The machine's axis of the n-th letter of X Y Z A B C U V W, which is the order of parameters; empty if there is none.
 std::optional<std::size_t> parameter_axis(const machine::Machine& machine, int nth);
 inline constexpr int kParameterAxes = 9;
 

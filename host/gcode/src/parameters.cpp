@@ -8,10 +8,10 @@ namespace trammel::gcode {
 namespace {
 
 constexpr std::size_t kMaxOfALine = 50;
-constexpr std::size_t kMaxNames = 4096;  // so that memory has a bound
+constexpr std::size_t kMaxNames = 4096;  // bounds the memory
 constexpr double kWholeSlack = 1e-4;     // as LinuxCNC
 
-// The whole number, or 0 where it is none that a parameter has.
+// The number of the parameter; 0 if there is no such parameter.
 int index_of(double number) {
   const double whole = std::floor(number + 0.5);
   return std::abs(number - whole) <= kWholeSlack && whole >= 1 && whole <= kLastParameter ? static_cast<int>(whole) : 0;
@@ -22,7 +22,7 @@ bool refuse_index(double number, Problem& problem) {
                      fmt::format("#{:.10g}: parameters have the numbers 1 to {}, or names", number, kLastParameter));
 }
 
-// LinuxCNC's #<_hal[...]> is a pin of its HAL, #<_ini[...]> an entry of its configuration.
+// In LinuxCNC, #<_hal[...]> is a pin of its HAL and #<_ini[...]> an entry of its configuration.
 bool refuse_name(std::string_view name, Problem& problem) {
   const bool of_linuxcnc = name.substr(0, 5) == "_hal[" || name.substr(0, 5) == "_ini[";
   return problem.set(ErrorCode::kParameter,

@@ -1,5 +1,5 @@
-// Parameters of a program: #1 to #5000 and #<names>, which it sets, and those that only tell something. Internal to the
-// reader. Numbers and meanings are LinuxCNC's.
+// Parameters of a program: #1 to #5000 and #<names>, which the program sets, and read-only ones. Internal to the
+// reader. Numbers and meanings are those of LinuxCNC.
 #pragma once
 
 #include <cstddef>
@@ -13,46 +13,46 @@
 
 namespace trammel::gcode {
 
-// A value, and whether only a probe that has not run yet will tell it: then it is what it would be if the probe
-// tripped at its target.
+// A value. `later`: it depends on a probe that has not run yet; `value` then assumes that the probe trips at its
+// target.
 struct Value {
   double value = 0;
   bool later = false;
 };
 
-// What programs may read and not set.
+// The read-only parameters.
 class Predefined {
  public:
   virtual ~Predefined() = default;
-  // kFirstPredefined .. kLastParameter; 0 where a number means nothing.
+  // kFirstPredefined .. kLastParameter; 0 if the number has no meaning.
   virtual Value numbered(int number) const = 0;
-  // Lower case; none where the name means nothing.
+  // Names are in lower case; empty if the name has no meaning.
   virtual std::optional<Value> named(std::string_view name) const = 0;
 };
 
 inline constexpr int kFirstPredefined = 5001;
 inline constexpr int kLastParameter = 5602;
-inline constexpr int kShowsMessages = 5599;  // programs may set it; LinuxCNC shows (DEBUG, ...) where it is not 0
+inline constexpr int kShowsMessages = 5599;  // a program may set it; LinuxCNC shows (DEBUG, ...) if it is not 0
 
 class Parameters {
  public:
   // `predefined` must outlive the parameters.
   explicit Parameters(const Predefined& predefined);
 
-  // A number that has not been set is 0, a name without a value an error.
+  // An unset number reads as 0; an unset name is an error.
   bool read(const Value& number, Value& value, Problem& problem) const;
   bool read(std::string_view name, Value& value, Problem& problem) const;
   bool exists(const Value& number) const;
   bool exists(std::string_view name) const;
 
-  // From take_effect() on.
+  // Assigned values take effect at take_effect().
   bool assign(const Value& number, const Value& value, Problem& problem);
   bool assign(std::string_view name, const Value& value, Problem& problem);
   bool any_assigned() const { return !pending_.empty(); }
   void take_effect();
   void drop_assigned() { pending_.clear(); }
 
-  // Those that programs set and that are not 0, and before a program the values that they have.
+  // collect(): the parameters that programs set, without those that are 0. preset(): values before the program.
   void collect(std::map<int, double>& numbers) const;
   void preset(int number, double value);
 
@@ -66,7 +66,7 @@ class Parameters {
     Value value;
   };
 
-  // nullptr for those that only tell something.
+  // nullptr for read-only parameters.
   Slot* slot_of(int index);
 
   const Predefined& predefined_;

@@ -1,4 +1,4 @@
-// What is wrong with the line being read. Internal to the reader, which adds the place.
+// The error in the line being read. Internal to the reader, which adds file and line.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@ namespace trammel::gcode {
 struct Problem {
   ErrorCode code{};
   std::string message;
-  std::string unknown;  // the word at the beginning of the line that is refused, where it could be left out
+  std::string unknown;  // the refused word at the beginning of the line, if its lines may be left out
 
-  // False, so that a function that fails can return it.
+  // Returns false, so that a failing function can return it.
   bool set(ErrorCode wrong, std::string what) {
     code = wrong;
     message = std::move(what);

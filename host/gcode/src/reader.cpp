@@ -84,7 +84,7 @@ class Reader::Impl {
   const std::string& file() const { return lines_.name(); }
 
  private:
-  // The next line and its motions. False at an error.
+  // Reads the next line and makes its motions. False at an error.
   bool read_line() {
     std::string_view line;
     if (!next_line(line)) {
@@ -135,8 +135,8 @@ class Reader::Impl {
     interpreter_.end(number_, motions_);
   }
 
-  // Without the blanks before it. Too long a line sets the error and is empty; false at the end, and where the source
-  // failed, which sets the error.
+  // Gets the next line, without blanks before it. A line that is too long sets the error and is given as empty. False
+  // at the end, and when the source failed, which sets the error.
   bool next_line(std::string_view& line) {
     if (!lines_.next(line)) {
       if (const auto failure = lines_.failure()) {
@@ -157,8 +157,8 @@ class Reader::Impl {
     return true;
   }
 
-  // The first one opens the program, the next one ends it; so does the first one behind words. What follows that is
-  // read to the end, so that no motion is left out in silence.
+  // The first '%' opens the program; the next one, or one after words, ends it. The lines after the end are read, so
+  // that no motion is left out silently.
   bool percent(std::string_view line) {
     if (!only_comments(line.substr(1))) {
       return fail();
@@ -181,7 +181,7 @@ class Reader::Impl {
     return !error_;
   }
 
-  // A problem where something but blanks and comments stands beside or behind a '%'.
+  // Sets a problem if anything but blanks and comments is on the line of a '%' or after the last one.
   bool only_comments(std::string_view text) {
     WordScanner scanner(text, parameters_);
     Word word{};
@@ -192,13 +192,13 @@ class Reader::Impl {
                                                                    quote(without_blanks_before(text))));
   }
 
-  // O1234, before all words.
+  // O1234 before all words.
   bool is_program_number(std::string_view line) {
     if (line.size() < 2 || upper(line.front()) != 'O' || !is_digit(line[1])) return false;
     return only_comments(line.substr(std::min(line.find_first_not_of("0123456789", 1), line.size())));
   }
 
-  // A line that is no G-code: its first letters are no words.
+  // Names the command of Klipper, if the line is one instead of G-code.
   void name_command(std::string_view line) {
     const std::string_view name = command_name(line);
     if (name.empty()) return;
@@ -213,11 +213,11 @@ class Reader::Impl {
     return (extruder != AxisLetters::kNone && words_.has_axis(extruder)) || words_.code(Group::kExtruder);
   }
 
-  // Words that have an effect, though not all that a user may expect.
+  // Counts words that have an effect, but less than a user may expect.
   void count_modes() {
     if (words_.code(Group::kPathControl) && words_.letter('Q')) ++accepted_["G64 Q"];  // naive cam: no lines are joined
     const std::optional<int> action = words_.code(Group::kNonModal);
-    if (action == code::kHome) ++accepted_["G28"];  // nothing is searched
+    if (action == code::kHome) ++accepted_["G28"];  // no switch is searched
     if (action == code::kDwell && words_.letter('P').value_or(0) > 0) ++dwells_by_p_;
   }
 
@@ -243,7 +243,7 @@ class Reader::Impl {
     if (!problem_.unknown.empty()) name_unknown();
     return fail(problem_.code, problem_.message);
   }
-  // How the program runs without the unknown word, and without those further down.
+  // Adds to the message how to run the program without the unknown word, and without those in later lines.
   void name_unknown() {
     const std::size_t here = number_;
     std::vector<std::string> names{problem_.unknown};
@@ -267,17 +267,17 @@ class Reader::Impl {
   Parameters parameters_;
   ReaderOptions options_;
   LeftOut left_out_;
-  std::size_t number_ = 0;  // of the line
+  std::size_t number_ = 0;  // number of the present line
   std::size_t first_line_ = 0;
-  bool in_program_ = false;  // a word, a program number or a '%' was there
-  bool has_words_ = false;   // a word was there
+  bool in_program_ = false;  // a word, a program number or a '%' has been read
+  bool has_words_ = false;   // a word has been read
   std::size_t dwells_by_p_ = 0;
   bool ended_ = false;
-  std::size_t ended_at_ = 0;  // line
+  std::size_t ended_at_ = 0;  // the line that ended the program
   bool awaits_probe_ = false;
   WordSet words_;
   LineMotions motions_;
-  std::size_t given_ = 0;  // of motions_
+  std::size_t given_ = 0;  // number of motions_ that next() has returned
   Problem problem_;
   std::optional<Error> error_;
   std::map<std::string, std::size_t> accepted_;

@@ -6,7 +6,7 @@
 namespace trammel::gcode {
 namespace {
 
-// Of the second difference of three control points.
+// Length of the second difference of three control points.
 double bend(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   const double x = a.x - 2 * b.x + c.x;
   const double y = a.y - 2 * b.y + c.y;
@@ -22,8 +22,8 @@ Cubic cubic_of(const PlanePoint& start, const PlanePoint& control, const PlanePo
   return {start, between(start), between(end), end};
 }
 
-// A chord over a step h of the parameter strays by h^2/8 of the second derivative, which is 6 times the second
-// differences and largest at an end.
+// The deviation of a chord over a step h of the parameter is at most h^2/8 of the second derivative. This is 6 times
+// the second differences of the control points, and largest at an end.
 std::uint32_t lines_of(const Cubic& curve) {
   const double second = 6 * std::max(bend(curve[0], curve[1], curve[2]), bend(curve[1], curve[2], curve[3]));
   const double lines = std::ceil(std::sqrt(second / (8 * kSplineTolerance)));

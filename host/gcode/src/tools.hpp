@@ -1,4 +1,4 @@
-// The tool that the program has, and its length. Internal to the reader.
+// The tool in use, the selected tool, and the lengths of tools. Internal to the reader.
 #pragma once
 
 #include <optional>
@@ -19,9 +19,9 @@ class Tools {
   std::optional<unsigned> selected() const { return selected_; }
   void preset_current(unsigned number) { current_ = number; }
 
-  // An offset of a tool of the machine file, 0 for others.
+  // Offset of a tool of the machine file; 0 for other tools.
   double offset(unsigned tool, std::size_t axis) const;
-  // G43 and G49. False, with a problem, for a tool that the machine file does not have; tool 0 has no length.
+  // G43 and G49. False, with a problem, for a tool that is not in the machine file; tool 0 has no length.
   bool apply(const WordSet& words, Offsets& offsets, Problem& problem) const;
 
  private:

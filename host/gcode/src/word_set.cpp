@@ -15,8 +15,9 @@ struct Code {
   char letter;
   int tenths;
   Group group;
-  bool effect;  // false: accepted, listed in the summary; M3 to M9 where they switch no output; M62 to M65 are refused
-                // there
+  // false: accepted, and listed in the summary unless the word switches an output of the machine (M3 to M9). M62 to M65
+  // are refused if they switch none.
+  bool effect;
 };
 
 constexpr std::array<Code, 80> kCodes = {{
@@ -49,7 +50,7 @@ constexpr std::array<Code, 80> kCodes = {{
     {'M', 820, Group::kExtruder, true},    {'M', 830, Group::kExtruder, true},
 }};
 
-// Place in kCodes of every G and M word, by its tenths.
+// Index into kCodes of every G and M word, by its tenths.
 constexpr std::uint8_t kNoCode = 0xff;
 using CodePlaces = std::array<std::uint8_t, 1000>;
 
@@ -76,7 +77,7 @@ const Code* find_code(char letter, int tenths) {
   return place != kNoCode ? &kCodes[place] : nullptr;
 }
 
-// Letters as a set of bits.
+// A set of letters, one bit per letter.
 constexpr std::uint32_t bit(char letter) { return 1U << static_cast<unsigned>(letter - 'A'); }
 constexpr std::uint32_t bits(std::string_view letters) {
   std::uint32_t set = 0;
@@ -93,7 +94,7 @@ constexpr std::uint32_t kOthers = bits("FHIJKLNPQRST");
 constexpr std::uint32_t kSignless = bits("FHLNST");
 constexpr std::uint32_t kWhole = bits("HLNT");
 constexpr std::uint32_t kToolNumbers = bits("HT");
-constexpr std::uint32_t kNow = bits("HLNT");  // values that no probe may decide
+constexpr std::uint32_t kNow = bits("HLNT");  // values that must not depend on a probe
 constexpr std::uint32_t kWithoutEffect = bits("ST");
 
 // Numbers of words are at most 1e12.
@@ -181,7 +182,7 @@ bool WordSet::add_code(const Word& word, Problem& problem) {
   if ((codes_present_ >> place & 1U) != 0) {
     if (code->group == Group::kMotion && (code->tenths == kCancel || codes_[place] == kCancel)) {
       codes_[place] = code->tenths == kCancel ? codes_[place] : static_cast<std::int16_t>(code->tenths);
-      return true;  // beside G80 the other word counts
+      return true;  // next to G80 the other word counts
     }
     return problem.set(ErrorCode::kModalGroupTwice,
                        fmt::format("'{}' beside another word of its modal group", quote(word.text)));
@@ -241,7 +242,8 @@ bool WordSet::add_axis(const Word& word, const AxisLetters& axes, Problem& probl
   return true;
 }
 
-// Letters without a number: axes of G28 and G30, alone. W is no axis of a printer: G28 W leaves out its bed levelling.
+// Letters without a number are allowed only as axes of G28 and G30. W is not an axis of a printer: G28 W means without
+// bed levelling.
 bool WordSet::check_bare(const AxisLetters& axes, Problem& problem) {
   const std::optional<int> action = code(Group::kNonModal);
   const bool home = action == code::kHome || action == code::kSecondHome;
@@ -259,7 +261,7 @@ bool WordSet::check_bare(const AxisLetters& axes, Problem& problem) {
   return true;
 }
 
-// Where its line could be left out, the reader says how.
+// If the line could be left out, the reader adds to the message how.
 bool WordSet::unsupported(const Word& word, Problem& problem) const {
   const CodeWord code{word.letter, in(word.letter, kCodeLetters) ? code_of(word.value) : -1};
   const OtherWord* const other = find_other_word(code.letter, code.tenths);
@@ -289,7 +291,7 @@ std::string_view why_not_left_out(const CodeWord& word) {
   if (has_effect(word).value_or(false)) return kObeyed;
   const OtherWord* const other = find_other_word(word.letter, word.tenths);
   if (other != nullptr) return other->treatment == Treatment::kNeverLeftOut ? other->why : std::string_view();
-  // G59.4 would do what G59 does, somehow.
+  // An unknown word such as G59.4 may act like G59, so it may be left out only if G59 may.
   const CodeWord whole{word.letter, word.tenths - word.tenths % 10};
   if (word.letter != 'G' || word.tenths == whole.tenths) return {};
   return why_not_left_out(whole);

@@ -1,4 +1,4 @@
-// One line of G-code as a set of words, one for each modal group and letter. Internal to the reader.
+// One line of G-code as a set of words, one word per modal group and letter. Internal to the reader.
 #pragma once
 
 #include <array>
@@ -47,10 +47,10 @@ enum class Group {
 
 inline constexpr std::size_t kLetters = 26;
 
-// Whether a word has one, or could; none for words that the reader does not understand.
+// Code::effect of the word: false if it does nothing on some machines, as M3. Empty if the reader does not know it.
 std::optional<bool> has_effect(const CodeWord& word);
 
-// The axis of each letter, or kNone.
+// The axis of each letter; kNone for a letter without an axis.
 class AxisLetters {
  public:
   static constexpr std::uint8_t kNone = 0xff;
@@ -61,39 +61,39 @@ class AxisLetters {
   std::array<std::uint8_t, kLetters> axes_;
 };
 
-// Values count only where the bit of their place is set: a line sets few of them.
+// A value is valid only if its bit is set. The arrays are not cleared between lines, because a line sets few of them.
 class WordSet {
  public:
-  // Sorts the words of a line. False, with a problem, for an unknown word, an axis that the machine lacks, two words of
-  // one group, a letter twice, and values that a letter cannot have.
-  // Assignments go to `parameters`, which have taken effect there when it gives true.
+  // Sorts the words of a line. Returns false, with a problem, for an unknown word, an axis that the machine lacks, two
+  // words of one group, a letter twice, and values that a letter cannot have. Assignments go to `parameters`, and have
+  // taken effect if it returns true.
   bool read(std::string_view line, const AxisLetters& axes, Parameters& parameters, Problem& problem);
 
   bool empty() const { return words_ == 0; }
-  // Nothing but axis words, G0 to G3 or G80, F and N, as most lines of most programs.
+  // Nothing but axis words, a motion word, F and N, as on most lines of most programs.
   bool is_plain() const { return (codes_present_ & ~kPlainGroups) == 0 && (letters_present_ & ~kPlainLetters) == 0; }
-  // In tenths of a group's word, as G2 = 20 or M30 = 300.
+  // The word of a group in tenths, such as G2 = 20 or M30 = 300.
   std::optional<int> code(Group group) const;
   std::optional<double> letter(char name) const;  // F H I J K L N P Q R S T
   bool has_axis_words() const { return axes_present_ != 0; }
   bool has_axis(std::size_t axis) const { return (axes_present_ >> axis & 1U) != 0; }
   double axis(std::size_t axis) const { return axes_[axis]; }  // as written
   std::uint32_t axes() const { return axes_present_; }         // bit n: axis n
-  // Named by G28 or G30 without a value.
+  // Axes that G28 or G30 names without a value.
   std::uint32_t bare_axes() const { return bare_axes_; }
-  // Of G4, seconds: P, or S where there is no P, which is then no speed.
+  // Seconds of a G4: P, or else S, which is then not a spindle speed.
   std::optional<double> dwell() const;
   bool dwells_by_s() const { return code(Group::kNonModal) == code::kDwell && !letter('P'); }
 
-  // What depends on a probe that has not run yet (see Value): any word, a letter, an axis word.
+  // Whether a value depends on a probe that has not run yet (see Value): of any word, of a letter, of an axis word.
   bool later() const { return (later_letters_ | later_axes_) != 0; }
   bool later(char name) const { return (later_letters_ >> (name - 'A') & 1U) != 0; }
   bool axis_later(std::size_t axis) const { return (later_axes_ >> axis & 1U) != 0; }
 
-  // Words without effect, where the machine has no output for them: "M3".
+  // Words that have no effect unless the machine has an output for them: "M3".
   struct Accepted {
     char letter;
-    int number;  // -1: the letter alone
+    int number;  // -1: a letter without a code
   };
   const Accepted* accepted_begin() const { return accepted_.data(); }
   const Accepted* accepted_end() const { return accepted_.data() + accepted_count_; }
@@ -122,7 +122,7 @@ class WordSet {
   std::array<std::int16_t, static_cast<std::size_t>(Group::kCount)> codes_;
   std::array<double, kLetters> letters_;
   std::array<double, card_map::kMaxAxes> axes_;
-  std::array<Accepted, static_cast<std::size_t>(Group::kCount) + 2> accepted_;  // one a group, S and T
+  std::array<Accepted, static_cast<std::size_t>(Group::kCount) + 2> accepted_;  // one per group, S and T
 };
 
 inline std::optional<int> WordSet::code(Group group) const {

@@ -15,10 +15,10 @@ namespace {
 bool unused(Problem& problem, std::string message) { return problem.set(ErrorCode::kUnusedWord, std::move(message)); }
 bool missing(Problem& problem, const char* message) { return problem.set(ErrorCode::kMissingWord, message); }
 
-// The letters that belong to the one motion of a line.
+// Which letters the words of a line use.
 struct Takers {
   std::optional<int> action;
-  std::optional<int> motion;  // that holds on this line
+  std::optional<int> motion;  // the motion in force on this line
   bool path_tolerance = false;
   bool arc = false;
   bool makes_arc = false;
@@ -32,7 +32,7 @@ struct Takers {
       case 'Q':
         return path_tolerance || motion == code::kSpline || (motion && pecks(*motion));
       case 'R':
-        return arc || is_cycle(motion) || action == code::kSet;  // G10 says why not
+        return arc || is_cycle(motion) || action == code::kSet;  // the check of G10 says why R is refused
       case 'I':
       case 'J':
         return arc || motion == code::kSpline || motion == code::kQuadratic;
@@ -61,7 +61,7 @@ const char* takers_of(char letter) {
   }
 }
 
-// The output's number has the line's P: no other word of the line may take it.
+// The number of the output is the line's P, so no other word of the line may use P.
 bool check_numbered(const WordSet& words, const Takers& takers, Problem& problem) {
   const std::string name = name_of('M', *words.code(Group::kNumbered));
   const auto number = words.letter('P');

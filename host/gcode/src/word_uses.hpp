@@ -1,4 +1,4 @@
-// Whether each word of a line has one that uses it. Internal to the reader.
+// Checks that each word of a line belongs to another word that uses it. Internal to the reader.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace trammel::gcode {
 
-// Whether the line's axis words belong to something else than a motion: G10, G28, G30, G43.1, G92.
+// Whether the line's axis words are used by something other than a motion: G10, G28, G30, G43.1, G92.
 bool uses_axes_otherwise(const WordSet& words);
 
-// `modal`: the motion that holds where the line has no motion word. Words that no other would use are refused, as are
-// those that lack one, and words that two would use.
+// Refuses words that no other word uses, words that lack one they need, and words that two others would use. `modal`:
+// the motion mode if the line has no motion word.
 bool check_uses(const WordSet& words, std::optional<int> modal, Problem& problem);
 
 }  // namespace trammel::gcode

@@ -12,15 +12,15 @@
 namespace trammel::gcode {
 namespace {
 
-// Whole numbers up to the first and powers of ten up to the second are doubles: their quotient is then rounded once
-// only, so that it is the double nearest to the decimal number.
+// Whole numbers up to kExactWhole and these powers of ten are exact doubles. Their quotient is rounded only once, so it
+// is the double nearest to the decimal number.
 constexpr std::uint64_t kExactWhole = std::uint64_t{1} << 53;
 constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                                  1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 bool is_printable(char c) { return c > ' ' && c < '\x7f'; }
 
-// The digits from `at` on, behind those of `whole`; gives back where they end.
+// Appends the digits from `at` on to `whole`; returns where they end.
 const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {
   for (; at < end && is_digit(*at); ++at) {
     whole = whole * 10 + static_cast<std::uint64_t>(*at - '0');
@@ -42,7 +42,7 @@ const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {
   const bool negative = at < end && *at == '-';
   at += at < end && (negative || *at == '+') ? 1 : 0;
   const char* const first = at;
-  std::uint64_t whole = 0;  // of all digits; meaningless above 19 of them
+  std::uint64_t whole = 0;  // all digits as one number; overflows above 19 digits
   at = add_digits(at, end, whole);
   auto digits = static_cast<std::size_t>(at - first);
   std::size_t decimals = 0;
@@ -118,7 +118,7 @@ bool WordScanner::skip_comment(Problem& problem) {
   return true;
 }
 
-// At the value; `from` is the word's letter.
+// at_ is at the value; `from` is the word's letter.
 bool WordScanner::expression(std::size_t from, Word& word, Problem& problem) {
   ExpressionReader reader(line_, at_, parameters_);
   Value value;
@@ -174,8 +174,8 @@ bool WordScanner::unexpected(Problem& problem) const {
                      fmt::format("unexpected '{}'", quote(line_.substr(at_, end - at_))));
 }
 
-// Whether a character that is no blank may stand right behind a number. An exponent's letter may not, in the way in
-// which programs print it: 1.5e-05. Read as two words that would be a motion of the axis E.
+// Whether a character other than a blank may follow a number directly. A lower-case e may not: programs print exponents
+// with it (1.5e-05). Read as two words, that would move the axis E.
 bool WordScanner::may_follow(char c) {
   return (is_letter(c) && c != 'e') || c == '(' || c == ';' || c == '%' || !is_printable(c);
 }
@@ -185,11 +185,11 @@ bool WordScanner::out_of_range(std::size_t from, Problem& problem) const {
                      fmt::format("number out of range in '{}'", quote(line_.substr(from, at_ - from))));
 }
 
-// More digits than a double holds exactly: std::from_chars rounds once, too.
+// For more digits than a double holds exactly. std::from_chars rounds only once, too.
 bool WordScanner::convert(std::size_t from, std::size_t end, double& value) const {
   const char* const last = line_.data() + end;
   const auto result = std::from_chars(line_.data() + from, last, value, std::chars_format::fixed);
-  // So small that it is no double: 0 is the nearest.
+  // Too small for a double: 0 is the nearest.
   if (result.ec == std::errc::result_out_of_range) {
     const std::string_view text = line_.substr(from, end - from);
     value = 0;
@@ -198,13 +198,13 @@ bool WordScanner::convert(std::size_t from, std::size_t end, double& value) cons
   return result.ec == std::errc() && result.ptr == last;
 }
 
-// Whether the letter stands alone: at_ is behind it and the blanks that follow.
+// Whether the letter has no number; at_ is after the letter and the blanks that follow it.
 bool WordScanner::is_bare(std::size_t letter) const {
   if (at_ == line_.size() || line_[at_] == ';' || line_[at_] == '(') return true;
   return is_letter(line_[at_]) && at_ > letter + 1;
 }
 
-// Quotes from the word's letter up to the next blank or letter.
+// The message quotes from the word's letter to the next blank or letter.
 bool WordScanner::malformed(std::size_t from, Problem& problem) const {
   std::size_t end = at_;
   while (end < line_.size() && is_printable(line_[end]) && !is_letter(line_[end])) {
@@ -234,7 +234,7 @@ int code_of(double value) {
   }
   const int whole = static_cast<int>(tenths + 0.5);
   const double off = tenths - whole;
-  // Tenths of a decimal fraction are off by a few ulps only.
+  // The tenths of a decimal fraction are off by a few ulps only.
   return off > 1e-6 || off < -1e-6 ? -1 : whole;
 }
 

@@ -16,20 +16,20 @@ struct Word {
   bool bare = false;      // a letter without a number: its value is 0
 };
 
-// Gives the words of a line one by one, without its comments. Numbers are decimal, without exponent, and become the
-// nearest double, whatever the locale and the machine. Assignments go to the parameters, which must outlive the
-// scanner, and take effect there when they are told to.
+// Gives the words of a line one by one, without comments. Numbers are decimal, without exponent, and become the nearest
+// double whatever the locale and the host. Assignments go to the parameters, which must outlive the scanner; they take
+// effect at Parameters::take_effect().
 class WordScanner {
  public:
   WordScanner(std::string_view line, Parameters& parameters) : line_(line), parameters_(parameters) {}
 
-  // False at the end of the line, and where `problem` is set: then failed().
+  // False at the end of the line, and after a problem: then failed() is true.
   bool next(Word& word, Problem& problem);
   bool failed() const { return failed_; }
 
  private:
   inline bool parse(Word& word, Problem& problem);
-  // What few lines need, out of the way of the rest.
+  // Few lines need these: the attribute keeps their code apart from the rest.
   [[gnu::cold]] bool skip_comment(Problem& problem);
   [[gnu::cold]] bool expression(std::size_t from, Word& word, Problem& problem);
   [[gnu::cold]] bool assignment(Problem& problem);
@@ -48,7 +48,7 @@ class WordScanner {
   bool failed_ = false;
 };
 
-// The code of a G or M word in tenths (G91.1 is 911), or -1 where it can be none.
+// The code of a G or M word in tenths (G91.1 is 911); -1 if the value cannot be a code.
 int code_of(double value);
 
 }  // namespace trammel::gcode

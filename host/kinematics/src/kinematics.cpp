@@ -105,8 +105,8 @@ Coordinates Kinematics::coordinates(const Pulses& at) const {
   return result;
 }
 
-// Two joints with the matrix (a b; c d) from the plane's axes to pulses: a circle stays one where the columns are at
-// right angles and equally long; it is an ellipse along the joints where each joint has an axis of its own.
+// Two joints with the matrix (a b; c d) from the plane's axes to pulses. A circle stays a circle if the columns are
+// orthogonal and equally long. It becomes an ellipse along the joints if each joint has an axis of its own.
 std::optional<PlaneMap> Kinematics::plane(std::size_t axis_x, std::size_t axis_y) const {
   std::array<std::uint8_t, 2> moved{};
   std::size_t count = 0;
@@ -116,7 +116,7 @@ std::optional<PlaneMap> Kinematics::plane(std::size_t axis_x, std::size_t axis_y
     moved[count++] = static_cast<std::uint8_t>(joint);
   }
   if (count != moved.size()) return std::nullopt;
-  // The first is the one of the plane's first axis, where each has its own.
+  // If each axis has a joint of its own, the first joint is that of the plane's first axis.
   if (factor(moved[0], axis_x) == 0) std::swap(moved[0], moved[1]);
   const Joint& first = layout_.joints[moved[0]];
   const Joint& second = layout_.joints[moved[1]];
@@ -126,7 +126,7 @@ std::optional<PlaneMap> Kinematics::plane(std::size_t axis_x, std::size_t axis_y
   const double d = factor(moved[1], axis_y) * second.steps_per_mm;
   const bool further =
       first.term_count + second.term_count != static_cast<std::size_t>((a != 0) + (b != 0) + (c != 0) + (d != 0));
-  if (further) return std::nullopt;  // an axis outside the plane moves them as well
+  if (further) return std::nullopt;  // an axis outside the plane moves them too
   PlaneMap map;
   map.joint_x = moved[0];
   map.joint_y = moved[1];

@@ -21,7 +21,7 @@ Joint joint_of(const MachineAxis& axis, std::size_t index) {
 
 Layout::Inverse same(std::size_t joint) { return {{{{static_cast<std::uint8_t>(joint), 1}, {}}}, 1}; }
 
-// A joint for each axis, of the same number.
+// One joint per axis, with the axis's number.
 Layout cartesian(const Machine& machine) {
   Layout layout;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -52,7 +52,7 @@ struct Member {
   Layout (*layout)(const Machine& machine);
 };
 
-// By the names of machine::kKinematics.
+// One member per name in machine::kKinematics.
 constexpr std::array<Member, machine::kKinematics.size()> kMembers{{{"cartesian", cartesian}, {"corexy", corexy}}};
 
 }  // namespace
@@ -70,7 +70,7 @@ Layout layout_of(const Machine& machine) {
                                           [&](const Member& m) { return m.name == machine.kinematics.name; });
   if (member == kMembers.end()) throw std::invalid_argument("no kinematics " + machine.kinematics.name);
   Layout layout = member->layout(machine);
-  // Second motors follow in the order of their axes, which no belt couples (machine_checks.cpp).
+  // Second motors come in the order of their axes. No belt couples these axes (machine_checks.cpp).
   for (const std::size_t axis : machine.second_motors()) {
     Joint second = layout.joints[axis];
     second.inverted = machine.axes[axis].second_inverted;

@@ -8,7 +8,7 @@ namespace trammel::kinematics {
 
 // The layout of the member that the machine names.
 Layout layout_of(const machine::Machine& machine);
-// A joint for each axis, a pulse a unit.
+// One joint per axis, one pulse per unit.
 Layout layout_in_pulses(std::size_t axes);
 
 }  // namespace trammel::kinematics

@@ -1,5 +1,5 @@
-// Blocks of arcs and helices: on the arc generator where a circle is a circle of pulses, arcs also on the accumulator,
-// where these are built in and they reach; else as chords.
+// Blocks of arcs and helices. The arc generator makes them, if the card has one and a circle is a circle in pulses.
+// Else the accumulator makes arcs, if the card has one and they are in its range. All others are made as chords.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMaxRadius = 0x1p44;             // pulses; the centre in 1/256 pulses fits 64 bits
 constexpr double kClocksPerPathTick = 10;         // the accumulator takes 9
-constexpr double kClocksPerEightDirections = 18;  // and 17
+constexpr double kClocksPerEightDirections = 18;  // the accumulator takes 17
 constexpr std::uint64_t kMaxParts = 1'000'000;
 
 double hypotenuse(double x, double y) { return std::sqrt(x * x + y * y); }
@@ -67,7 +67,7 @@ PlaneVectors plane_vectors(const Block& block) {
 
 double largest_radius(const Block& block) { return std::max(block.exact.radius_start, block.exact.radius_end); }
 
-// The block's arc between two points on it. Throws std::invalid_argument where they are too far apart.
+// The block's arc between two points on it. Throws std::invalid_argument if they are too far apart.
 driver::ArcGeometry geometry_of(const Block& block, const Pulses& start, const Pulses& end, double sweep) {
   driver::ArcGeometry geometry;
   geometry.centre_x = block.centre_x - start[block.joint_x] * driver::kCentreUnitsPerPulse;
@@ -93,7 +93,7 @@ bool is_helix(const Block& block) {
   return false;
 }
 
-// On axes of unequal steps/mm the circle is an ellipse of pulses. Its centre and semi-axes are whole ones.
+// A circle on axes of unequal steps/mm is an ellipse in pulses. Its centre and semi-axes are rounded to whole pulses.
 driver::EllipseGeometry ellipse_of(const Block& block, const kinematics::PlaneMap& plane) {
   const driver::ArcGeometry arc = geometry_of(block, block.start, block.end, block.exact.sweep);
   const double radius = (block.exact.radius_start + block.exact.radius_end) / 2;
@@ -114,7 +114,7 @@ driver::EllipseGeometry ellipse_of(const Block& block, const kinematics::PlaneMa
   return ellipse;
 }
 
-// None where the accumulator's bounds do not admit the arc.
+// Empty if the accumulator's bounds do not admit the arc.
 std::optional<driver::ArcCommand> accumulator_arc(const Block& block, const kinematics::PlaneMap& plane,
                                                   driver::StepRule rule) {
   try {
@@ -130,7 +130,7 @@ std::optional<driver::ArcCommand> accumulator_arc(const Block& block, const kine
 std::uint64_t chord_count(const ExactArc& arc, double max_pulses_per_mm) {
   constexpr double kChordError = 0.25;  // pulses
   const double radius = std::max(arc.radius_start, arc.radius_end) * max_pulses_per_mm;
-  // A chord over the angle d strays r (1 - cos(d / 2)) from its arc; the arc sine keeps its digits where d is small.
+  // A chord over the angle d deviates by r (1 - cos(d / 2)) from its arc; the arc sine keeps its digits for small d.
   const double turn = radius > kChordError ? 4 * driver::arc_sine(std::sqrt(kChordError / radius / 2)) : driver::kPi;
   return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, driver::kPi / 4)));
 }
@@ -146,7 +146,7 @@ driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const kine
   return helix;
 }
 
-// The arc's extremes: its start and end are targets, the others lie at whole quarters of a turn.
+// Checks the extremes at whole quarters of a turn. Start and end of the arc are checked as targets.
 bool BlockBuilder::check_arc(const Block& block) {
   const ExactArc& arc = block.exact;
   const double scale = std::max(kinematics_.finest(block.axis_x), kinematics_.finest(block.axis_y));
@@ -159,7 +159,7 @@ bool BlockBuilder::check_arc(const Block& block) {
     while (turned < 0) turned += 2 * driver::kPi;
     while (turned >= 2 * driver::kPi) turned -= 2 * driver::kPi;
     if (turned > arc.sweep) continue;
-    // Where it gets there first, and last.
+    // The first and the last time that the arc gets there.
     for (const double at : {turned, turned + 2 * driver::kPi * std::floor((arc.sweep - turned) / (2 * driver::kPi))}) {
       const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * (at / arc.sweep);
       const double side = quarter < 2 ? radius : -radius;
@@ -189,9 +189,10 @@ bool BlockBuilder::build_arc(Block& block) {
   centre[block.axis_y] = motion_.centre_y;
   block.centre_x = centre_units(kinematics_, plane->joint_x, centre);
   block.centre_y = centre_units(kinematics_, plane->joint_y, centre);
-  // Radius and bounds are checked where the commands are made.
+  // Radius and bounds are checked when the commands are made.
   if (card_.arc_generator && plane->circle && build_generator_arc(block, *plane)) return true;
-  // Beside a generator, chords follow a circle on unequal scales closer than an ellipse of whole pulses.
+  // On a card with a generator, a circle on unequal scales becomes chords: they follow it more closely than an ellipse
+  // of whole pulses.
   const bool accumulates = card_.accumulator && (plane->circle || !card_.arc_generator);
   const auto rule = card_.eight_directions ? driver::StepRule::kEightDirections : driver::StepRule::kFourDirections;
   if (accumulates && !is_helix(block)) {
@@ -203,7 +204,7 @@ bool BlockBuilder::build_arc(Block& block) {
   return build_chords(block);
 }
 
-// A blend in any plane: no engine of the card makes it.
+// A blend outside the main planes. No engine of the card can make it.
 bool BlockBuilder::build_tilted(Block& block) {
   block.clockwise = false;
   block.space = motion_.space;
@@ -215,7 +216,7 @@ bool BlockBuilder::build_tilted(Block& block) {
   return build_chords(block);
 }
 
-// In the plane, at a share, 0 or 1, of the arc.
+// Direction in the plane at the arc's beginning (`share` 0) or end (1).
 Direction BlockBuilder::tangent(const Block& block, double share) {
   if (block.tilted) {
     const SpaceArc& space = block.space;
@@ -234,8 +235,8 @@ Direction BlockBuilder::tangent(const Block& block, double share) {
   return direction;
 }
 
-// Sets length, scale and directions; gives back the length that F counts for. The arc, unrolled, and the axes outside
-// its plane are the sides of a straight line.
+// Sets length, scale and directions; returns the length that F counts. The arc is measured as a straight line, whose
+// components are the unrolled arc and the axes outside its plane.
 double BlockBuilder::measure_arc(Block& block) const {
   const double length = largest_radius(block) * block.exact.sweep;  // in the plane
   gcode::Coordinates way{};
@@ -253,7 +254,7 @@ double BlockBuilder::measure_arc(Block& block) const {
   return feed_length;
 }
 
-// What the axes outside the plane allow.
+// Applies the limits of the axes outside the plane and of the joints that they move.
 void BlockBuilder::limit_further(Block& block) const {
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const double share = std::abs(block.entry[i]);
@@ -272,7 +273,7 @@ void BlockBuilder::limit_further(Block& block) const {
   }
 }
 
-// Most pulses that a joint makes a mm in the plane, of an axis alone or in any direction.
+// The most pulses that a joint makes per mm in the plane, along one axis or in any direction.
 double BlockBuilder::finest_in_plane(const Block& block) const {
   const PlaneVectors plane = plane_vectors(block);
   double finest = 0;
@@ -286,8 +287,8 @@ double BlockBuilder::finest_in_plane(const Block& block) const {
   return finest;
 }
 
-// Most mm of a joint a mm of path, of a joint that axes outside the plane move, else 0. These go evenly along the whole
-// arc; a joint that the plane moves as well has at the most both together.
+// Largest mm of a joint per mm of path, if axes outside the plane move the joint, else 0. These axes move evenly along
+// the whole arc. If the plane moves the joint too, the result is the sum of both.
 double BlockBuilder::joint_share(const Block& block, std::size_t joint) const {
   Direction further = block.entry;
   for (std::size_t i = 0; i < axis_count_; ++i) further[i] = in_plane(block, i) ? 0 : further[i];
@@ -298,7 +299,8 @@ double BlockBuilder::joint_share(const Block& block, std::size_t joint) const {
   return beside + slope * kinematics_.max_in_plane(joint, plane.first, plane.second);
 }
 
-// In a plane no direction has more of an axis, or of a joint, than the two unit vectors have together.
+// No direction in the plane has a larger component of an axis or joint than the two unit vectors together (root of the
+// sum of squares).
 BlockBuilder::PlaneLimits BlockBuilder::plane_limits(const Block& block) const {
   PlaneLimits limits{kNoLimit, kNoLimit, kNoLimit, kNoLimit};
   const auto take = [&limits](const auto& of, double share) {
@@ -320,13 +322,13 @@ BlockBuilder::PlaneLimits BlockBuilder::plane_limits(const Block& block) const {
   return limits;
 }
 
-// What holds for all ways to make an arc. `unevenness`: largest over planned speed, anywhere in it; `share`: of the
-// axes' acceleration and jerk, for what the way to make it adds.
+// Applies the limits that hold whatever makes the arc. `unevenness`: largest speed anywhere on it over planned speed.
+// `share`: share of the axes' acceleration and jerk that is left beside what the method adds.
 void BlockBuilder::limit_arc(Block& block, double unevenness, double share) const {
   const PlaneLimits plane = plane_limits(block);
   const double radius = largest_radius(block);
   const double feed_length = measure_arc(block);
-  const double slope = radius * block.exact.sweep / block.length;  // mm in the plane a mm of path
+  const double slope = radius * block.exact.sweep / block.length;  // mm in the plane per mm of path
   const double acceleration = plane.acceleration * share;
   const double jerk = plane.jerk * share;
   block.speed = plane.velocity / unevenness / slope;
@@ -346,10 +348,10 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
   block.curvature = (block.clockwise ? -1 : 1) * slope * slope / radius;
 }
 
-// False where the generator cannot make it.
+// False if the generator cannot make the arc.
 bool BlockBuilder::build_generator_arc(Block& block, const kinematics::PlaneMap& plane) const {
-  constexpr double kMaxTurns = 50'000;   // of a command: half of what the driver takes
-  constexpr double kMaxPulses = 0x1p30;  // along the path of a command: at 64 path ticks a pulse half of 2^37
+  constexpr double kMaxTurns = 50'000;   // per command: half of what the driver takes
+  constexpr double kMaxPulses = 0x1p30;  // along the path of a command: at 64 path ticks per pulse half of 2^37
   const double turns = block.exact.sweep / (2 * driver::kPi);
   const double pulses = largest_radius(block) * block.exact.sweep * plane.scale_x;
   block.geometry = Geometry::kArcChord;
@@ -369,11 +371,12 @@ bool BlockBuilder::build_generator_arc(Block& block, const kinematics::PlaneMap&
   return true;
 }
 
-// Unit steps come evenly: the path's speed changes along it as 1 / g, with the axes' steps/mm sx, sy and V steps a
-// second. In 4 directions g = |sin| sx + |cos| sy, least along the coarser axis, and the path's acceleration, which
-// adds to what a ramp does, is V^2 sqrt(sx^2 + sy^2) / (r g^3); where the scales are equal the speed is 4/pi at the
-// most above its mean. In 8 directions a diagonal is one step: g = max(|sin| sx, |cos| sy), least along the diagonal,
-// and the acceleration V^2 max(sx, sy) / (r g^3) at the most.
+// The accumulator makes V unit steps per second evenly, so the speed along the path varies as V / g. g is the number of
+// unit steps per mm, which depends on the direction; sx and sy are the steps/mm of the axes.
+// In 4 directions g = |sin| sx + |cos| sy, which is least along the coarser axis; on equal scales the speed is at most
+// 4/pi times its mean. The variation adds an acceleration of V^2 sqrt(sx^2 + sy^2) / (r g^3) to that of ramps.
+// In 8 directions a diagonal is one step: g = max(|sin| sx, |cos| sy), which is least along the diagonal. The
+// acceleration is at most V^2 max(sx, sy) / (r g^3).
 bool BlockBuilder::build_accumulator_arc(Block& block, const kinematics::PlaneMap& plane) {
   block.geometry = Geometry::kArc;
   const bool eight = block.arc.eight_directions;
@@ -383,10 +386,10 @@ bool BlockBuilder::build_accumulator_arc(Block& block, const kinematics::PlaneMa
   const double scale_y = plane.scale_y;
   const double both = hypotenuse(scale_x, scale_y);
   const double least = eight ? scale_x * scale_y / both : std::min(scale_x, scale_y);
-  const double mean = std::max(least, steps / (radius * block.exact.sweep));  // steps a mm
+  const double mean = std::max(least, steps / (radius * block.exact.sweep));  // steps per mm
   const double unevenness = mean / least;
   const double share = std::sqrt(0.5) * least / (eight ? std::max(scale_x, scale_y) : both);
-  // Two feed ticks a unit step at least: the step is then within a tick of its time.
+  // At least two feed ticks per unit step, so that the step is within one tick of its time.
   block.least_ticks = 2 * block.arc.path_ticks;
   limit_arc(block, unevenness, share / (unevenness * unevenness));
   const double unit_steps = steps / block.length;

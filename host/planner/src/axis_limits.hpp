@@ -1,5 +1,5 @@
-// What planning may use of an axis's limits: less by max_override, its square and cube, and by hold_reserve. Internal
-// to the planner.
+// The part of an axis's limits that planning may use: divided by max_override, its square and its cube; acceleration is
+// also reduced by hold_reserve. Internal to the planner.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 struct AxisLimits {
   double velocity;      // mm/s
   double acceleration;  // mm/s^2
-  double jerk;          // mm/s^3, infinite without a limit
+  double jerk;          // mm/s^3, infinite: no limit
 };
 
 inline AxisLimits limits_of(const machine::MachineAxis& axis, const machine::MotionSettings& motion) {
@@ -23,7 +23,7 @@ inline AxisLimits limits_of(const machine::MachineAxis& axis, const machine::Mot
           axis.max_jerk > 0 ? axis.max_jerk * spare * spare * spare : kNoLimit};
 }
 
-// Of a joint: infinite ones stay so.
+// Of a joint; infinite limits stay infinite.
 inline AxisLimits limits_of(const machine::JointLimits& joint, const machine::MotionSettings& motion) {
   const double spare = 1 / motion.max_override;
   return {joint.velocity * spare, joint.acceleration * (1 - motion.hold_reserve) * spare * spare,
@@ -32,11 +32,12 @@ inline AxisLimits limits_of(const machine::JointLimits& joint, const machine::Mo
 
 inline bool is_linear(const machine::MachineAxis& axis) { return axis.letter >= 'X' && axis.letter <= 'Z'; }
 
-// Of the acceleration on an arc so much goes across the path at the most: without the rest no ramp would reach the
+// The largest share of the acceleration on an arc that acts across the path. Without the rest, no ramp would reach the
 // speed. It costs 0.25 % of the highest speed.
 constexpr double kAcross = 0.995;
 
-// Of the jerk on an arc at the speed v on the radius r, v^3 / r^2 is so much at the most; Curve shares out the rest.
+// The largest share of the jerk on an arc that v^3 / r^2 takes, at the speed v and the radius r; Curve divides the
+// rest.
 constexpr double kTurningJerk = 0.8;
 
 }  // namespace trammel::planner

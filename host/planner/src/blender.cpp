@@ -14,11 +14,11 @@ namespace trammel::planner {
 namespace {
 
 constexpr double kFullTurn = 2 * driver::kPi;
-constexpr double kMinShare = 1e-9;  // of a motion, that is worth going
-constexpr double kInPlane = 1e-12;  // of a unit vector, that is no way out of a plane
+constexpr double kMinShare = 1e-9;  // a smaller share of a motion is dropped
+constexpr double kInPlane = 1e-12;  // a component of a unit vector up to this counts as 0
 constexpr double kInvisiblePulses = 0.25;
-constexpr double kMinRadius = 3;     // pulses: rounded ends make an arc of less another one
-constexpr double kSameAngle = 1e-6;  // radians: more than an arc's ends may be off by
+constexpr double kMinRadius = 3;     // pulses: rounding of the ends distorts smaller arcs
+constexpr double kSameAngle = 1e-6;  // radians: more than the error of an arc's ends
 
 double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
 double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -82,7 +82,7 @@ bool Blender::next(PathMotion& motion) {
   return true;
 }
 
-// The next motion; those of no way at all are left out.
+// Gets the next motion; skips lines and traverses of length 0.
 bool Blender::pull(Way& way) {
   gcode::Motion& motion = way.motion;
   while (reader_.next(motion)) {
@@ -136,7 +136,7 @@ void Blender::measure_arc(Way& way) const {
   }
 }
 
-// Where a share of the motion is over.
+// The point after a share of the motion.
 gcode::Coordinates Blender::point(const Way& way, double share) {
   gcode::Coordinates found = way.motion.programmed;
   for (std::size_t axis = 0; axis < found.size(); ++axis) {
@@ -152,7 +152,7 @@ gcode::Coordinates Blender::point(const Way& way, double share) {
   return found;
 }
 
-// What is left of it.
+// Shortens the motion to the part that the blends leave.
 void Blender::trim(Way& way) {
   const double taken = way.taken_before + way.taken_behind;
   if (taken == 0) return;
@@ -164,8 +164,8 @@ void Blender::trim(Way& way) {
   motion.turns = static_cast<std::uint32_t>(std::ceil(way.sweep * (1 - taken) / kFullTurn)) - 1;
 }
 
-// Whether the ends of what is left of an arc tell how far it goes: neither a whole turn nor none, give or take a
-// little.
+// Whether the motion may lose this share. The sweep that an arc has left must not be close to a whole number of turns,
+// because its ends could not tell a full turn from none.
 bool Blender::can_lose(const Way& way, double share) {
   if (way.motion.kind != gcode::MotionKind::kArc || share >= 1 - kMinShare) return true;
   const double turns = way.sweep * (1 - share) / kFullTurn;
@@ -193,20 +193,20 @@ Blender::Vector Blender::direction(const Way& way, bool at_end) const {
   return found;
 }
 
-// To the left, in the frame.
+// Positive to the left, in the frame.
 double Blender::curvature(const Way& way, bool at_end) {
   if (way.motion.kind != gcode::MotionKind::kArc) return 0;
   return (way.motion.clockwise ? -1 : 1) / (at_end ? way.radius_end : way.radius_start);
 }
 
-// How far rounded centres put an arc off its circle.
+// The difference of an arc's radii, which a rounded centre causes.
 double Blender::slack(const Way& way) {
   return way.motion.kind == gcode::MotionKind::kArc ? std::abs(way.radius_end - way.radius_start) : 0;
 }
 
-// The main plane that holds both, or, of two lines, the one through them.
+// Finds the main plane that contains both motions, or the plane through two lines.
 bool Blender::find_frame(const Way& from, const Way& to, const Turn& turn, Frame& frame) const {
-  // X Y, Z X, Y Z, as Motion::axis_x and axis_y have them, and what stands on them.
+  // X Y, Z X, Y Z in the order of Motion::axis_x and axis_y, each with its normal.
   constexpr std::size_t kPlanes[3][3] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};
   const bool lines = from.motion.kind != gcode::MotionKind::kArc && to.motion.kind != gcode::MotionKind::kArc;
   const auto lies_in = [&](const Way& way, const std::size_t* plane) {
@@ -316,7 +316,7 @@ void Blender::make(const Way& from, const Way& to, const Frame& frame, const Tur
     made.centre_y = centre[frame.letters[1]];
     return;
   }
-  // The turn is to the left there: the second vector is on the side that the path turns to.
+  // The path turns left in this frame: the second vector points to the inside of the turn.
   for (std::size_t i = 0; i < 3; ++i) {
     made.space.axes[i] = static_cast<std::uint8_t>(space_[i]);
     made.space.first[i] = -frame.second[i];

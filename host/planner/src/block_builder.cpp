@@ -15,13 +15,13 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kShaperShare = 0.95;  // of the rate at which the shaper makes pulses without a pause
-// One pulse less than the counters hold, for the rounding.
+constexpr double kShaperShare = 0.95;  // share of the shaper's fastest rate without a pause
+// One pulse less than the counters hold, as room for rounding.
 constexpr double kMaxPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
-constexpr double kMaxDwellTotal = 0x1p48;  // clocks of one G4
+constexpr double kMaxDwellTotal = 0x1p48;  // clocks per G4
 constexpr double kSoftLimitSlack = 1e-6;   // mm; far below a pulse, far above the rounding of sums
-constexpr double kMinWay = 2;              // pulses of X, Y and Z together: less may have no step
-constexpr double kSameSpeed = 1 - 1e-6;    // a feed is reached from this share on
+constexpr double kMinWay = 2;              // pulses: a shorter path of X, Y and Z may have no step
+constexpr double kSameSpeed = 1 - 1e-6;    // share of the feed from which on it counts as reached
 
 constexpr std::array<std::string_view, 4> kFeedGroups = {"XYZ", "UVW", "ABC", "E"};
 
@@ -116,7 +116,7 @@ bool BlockBuilder::next(Block& block) {
   return false;
 }
 
-// False: nothing to step, or an error.
+// False if there is no step, or after an error.
 bool BlockBuilder::build(Block& block) {
   block.line = motion_.line;
   block.start = here_;
@@ -146,8 +146,8 @@ bool BlockBuilder::refuse(gcode::ErrorCode code, std::string message) {
   return false;
 }
 
-// Comes by each axis that moves: an arc changes a coordinate at its end, or passes its extreme. Where a probe decides,
-// the limit is for when that is known.
+// Checks a coordinate that an axis reaches: an end point, or an extreme of an arc. If a probe decides the coordinate,
+// its soft limits are checked when it is known.
 bool BlockBuilder::check(std::size_t axis, double mm) {
   const Axis& limits = axes_[axis];
   const char letter = machine_.axes[axis].letter;
@@ -155,7 +155,7 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
     return refuse(gcode::ErrorCode::kNoJerk,
                   fmt::format("axis {} moves and has no max_jerk in the machine file, which S-curves need", letter));
   }
-  // Where two axes move a joint, each may take half of its counter.
+  // If two axes move a joint, each may use half of the joint's counter.
   const auto share = static_cast<double>(kinematics_.max_terms(axis));
   if (!(std::abs(mm * kinematics_.finest(axis)) * share <= kMaxPulses)) {
     return refuse(gcode::ErrorCode::kPositionRange,
@@ -173,7 +173,7 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
 }
 
 bool BlockBuilder::set_targets(Block& block) {
-  unsigned moved = 0;  // axes, a bit each
+  unsigned moved = 0;  // bit n: axis n
   for (std::size_t axis = 0; axis < axis_count_; ++axis) {
     const double mm = motion_.target[axis];
     const double programmed = motion_.programmed[axis];
@@ -188,7 +188,7 @@ bool BlockBuilder::set_targets(Block& block) {
   return true;
 }
 
-// What a card cannot switch is not on, so nothing is wrong with switching it off.
+// An output that the card cannot switch is always off, so switching it off is not an error.
 void BlockBuilder::switch_outputs() {
   unsigned output = 0;
   for (; output < card_.outputs || motion_.set >> output != 0; ++output) {
@@ -216,7 +216,7 @@ bool BlockBuilder::build_dwell(Block& block) {
   return true;
 }
 
-// A motion without a pulse is measured by itself.
+// A line with steps is measured from the end of the last block, others from the end of the last motion.
 bool BlockBuilder::build_line(Block& block) {
   const bool steps = block.end != block.start;
   if (!steps && motion_.target == exact_) return false;
@@ -229,7 +229,7 @@ bool BlockBuilder::build_line(Block& block) {
   const double feed_length = measure_line(block, way);
   for (std::size_t i = 0; i < axis_count_; ++i) block.entry[i] = way[i] / block.length;
   block.exit = block.entry;
-  // A joint that two axes move may make more pulses than either alone.
+  // A joint that two axes move may make more pulses than either axis alone would cause.
   for (std::size_t i = 0; i < joint_count(); ++i) {
     if (kinematics_.joint(i).term_count == 1) continue;
     block.pulses_per_mm = std::max(block.pulses_per_mm, std::abs(kinematics_.pulse_rate(i, block.entry)));
@@ -241,7 +241,7 @@ bool BlockBuilder::build_line(Block& block) {
   return steps;
 }
 
-// As the program has it: from where the motion before ended.
+// The heading of the motion as programmed, from the end of the motion before.
 Heading BlockBuilder::heading_of(const Block& block) const {
   if (block.geometry != Geometry::kLine) return {block.entry, block.length, block.speed, block.linear};
   gcode::Coordinates way{};
@@ -253,7 +253,7 @@ Heading BlockBuilder::heading_of(const Block& block) const {
   return heading;
 }
 
-// Before exact_ moves on. Of an arc without a pulse no way is kept.
+// Call before exact_ advances. An arc without a pulse has no known heading: its corners count as a stop.
 void BlockBuilder::follow_detour(Block& block, bool any) {
   if (motion_.kind == gcode::MotionKind::kOutput) return;
   if (any) {
@@ -268,13 +268,13 @@ void BlockBuilder::follow_detour(Block& block, bool any) {
   }
 }
 
-// Sets length and scale; gives back the length that F counts for.
+// Sets length and scale; returns the length that F counts.
 double BlockBuilder::measure_line(Block& block, const gcode::Coordinates& way) const {
   double squares = 0;
   std::array<double, kFeedGroups.size() + 1> feed_squares{};
   double scale = 0;
-  double finest = 0;        // of all that move
-  double other_pulses = 0;  // the most of an axis that the length does not count
+  double finest = 0;        // of all axes that move
+  double other_pulses = 0;  // the most of one axis that the length does not count
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const Axis& axis = axes_[i];
     if (way[i] == 0) continue;
@@ -302,7 +302,7 @@ void BlockBuilder::limit_speed(Block& block, double speed, SpeedLimit limit) {
   block.limit = limit;
 }
 
-// What each axis allows along a straight path.
+// Applies the limits of the axes on a straight path.
 void BlockBuilder::limit_line(Block& block) const {
   block.speed = kNoLimit;
   block.acceleration = kNoLimit;
@@ -316,7 +316,7 @@ void BlockBuilder::limit_line(Block& block) const {
   }
 }
 
-// What joints with limits of their own allow along a straight path.
+// Applies the joints' own limits on a straight path.
 void BlockBuilder::limit_joints(Block& block) const {
   if (!kinematics_.has_joint_limits()) return;
   for (std::size_t i = 0; i < joint_count(); ++i) {
@@ -328,7 +328,7 @@ void BlockBuilder::limit_joints(Block& block) const {
   }
 }
 
-// Rounding adds up to a pulse, which may come a little late.
+// Rounding adds up to one pulse. It is not counted: it may come a little late.
 void BlockBuilder::limit_pulses(Block& block) const {
   std::int64_t most = 0;
   for (std::size_t i = 0; i < joint_count(); ++i) {
@@ -337,10 +337,10 @@ void BlockBuilder::limit_pulses(Block& block) const {
     if (pulses < 2) continue;
     limit_speed(block, joints_[i].pulses * block.length / static_cast<double>(pulses - 1), SpeedLimit::kPulseShape);
   }
-  block.least_ticks = static_cast<std::uint64_t>(most);  // at most one pulse a tick
+  block.least_ticks = static_cast<std::uint64_t>(most);  // at most one pulse per tick
 }
 
-// What the program asks for, against the limits so far.
+// Applies the program's feed to the limits so far.
 void BlockBuilder::apply_feed(Block& block, double feed_length) const {
   const SpeedLimit limit = block.limit;
   block.limit = SpeedLimit::kNone;

@@ -30,13 +30,13 @@ CardLimits limits_of(const driver::Identification& card) {
 
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {
   if (arcs != ArcsBy::kGenerator) card.arc_generator = false;
-  // Elsewhere the papers' own 4, as without it.
+  // Other choices use the papers' own 4 directions, as a card without the 8.
   if (arcs != ArcsBy::kEightDirections) card.eight_directions = false;
   if (arcs == ArcsBy::kChords) card.accumulator = false;
   return card;
 }
 
-// As Card::set_slew_time() rounds it.
+// Rounded as by Card::set_slew_time().
 double hold_clocks(const machine::Machine& machine, double clock_hz) {
   constexpr auto kSlowest = static_cast<double>(driver::kSlowestSlew);
   const double clocks = std::clamp(std::ceil(hold_seconds(machine) * clock_hz), 1.0, kSlowest);

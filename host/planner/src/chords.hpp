@@ -12,10 +12,10 @@
 
 namespace trammel::planner {
 
-// Chords of equal angles so many that none strays more than a quarter of a pulse from its arc.
+// Number of chords of equal angles such that none deviates by more than a quarter of a pulse from its arc.
 std::uint64_t chord_count(const ExactArc& arc, double max_pulses_per_mm);
 
-// Sets the coordinates of the arc's plane at a share, 0 to 1, of the arc; gives back these axes, a bit each.
+// Sets the coordinates of the arc's plane at a share, 0 to 1, of the arc; returns these axes, bit n: axis n.
 inline unsigned place_on_arc(const Block& block, double share, gcode::Coordinates& at) {
   if (block.tilted) {
     const SpaceArc& space = block.space;
@@ -36,8 +36,9 @@ inline unsigned place_on_arc(const Block& block, double share, gcode::Coordinate
   return 1U << block.axis_x | 1U << block.axis_y;
 }
 
-// Where part `i` of `count`, of equal angles, ends; the last one at the block's end. Joints that no axis of the plane
-// moves go evenly. An axis outside the plane that moves a joint of it is where the joints' even way has it.
+// The joints at corner `i` of `count` parts of equal angles; 0 is the block's start, `count` its end. Joints that no
+// axis of the plane moves advance evenly. An axis outside the plane that shares a joint with it has the coordinate that
+// evenly moving joints would give it.
 inline Pulses corner(const Block& block, std::uint64_t i, std::uint64_t count,
                      const kinematics::Kinematics& kinematics) {
   if (i == 0) return block.start;
@@ -70,8 +71,7 @@ void for_each_chord(const Block& block, const kinematics::Kinematics& kinematics
   }
 }
 
-// Part `i` of the block's parts for the arc generator. Throws std::invalid_argument where the command has no room for
-// it.
+// Part `i` of the block's parts for the arc generator. Throws std::invalid_argument if the command cannot hold it.
 driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const kinematics::Kinematics& kinematics);
 
 }  // namespace trammel::planner

@@ -61,7 +61,7 @@ double CornerTime::blend_speed(const Fillet& blend, const CornerSide& from, cons
   return speed;
 }
 
-// From the corner's speed up to the highest that the length allows.
+// Time over the length, with a ramp from `end_speed` to the highest speed that limits and length allow.
 double CornerTime::seconds(const Along& along, double length, double end_speed) {
   if (!(length > 0)) return 0;
   const double low = std::min(end_speed, along.speed);

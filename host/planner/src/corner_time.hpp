@@ -1,5 +1,5 @@
-// Whether a corner is passed sooner as it is, or by a blend: from the middle of the motion before it to the middle of
-// the one behind, either as if it stood alone. Internal to the planner; pure.
+// Compares the time that a corner takes with the time of its blend, from the middle of the motion before to the middle
+// of the motion after. The other ends of the two motions are not considered. Internal to the planner; pure.
 #pragma once
 
 #include <array>
@@ -11,18 +11,18 @@
 
 namespace trammel::planner {
 
-// One of the two motions, at the corner.
+// A motion at the corner.
 struct CornerSide {
-  std::array<double, card_map::kMaxAxes> direction{};  // mm a mm of X Y Z, of all axes
+  std::array<double, card_map::kMaxAxes> direction{};  // mm of each axis per mm of X Y Z
   double length = 0;                                   // mm, of the whole motion
-  double curvature = 0;                                // 1/mm, of any sign
-  double speed = 0;                                    // mm/s, that the program wants; infinite: as fast as may be
+  double curvature = 0;                                // 1/mm, either sign
+  double speed = 0;                                    // mm/s, of the program; infinite: as fast as possible
 };
 
 class CornerTime {
  public:
   explicit CornerTime(const machine::Machine& machine);
-  // `sine`: of half the angle between the directions.
+  // Whether the corner takes less time without the blend. `sine`: of half the angle between the directions.
   bool is_less_without(const Fillet& blend, const CornerSide& from, const CornerSide& to, double sine) const;
 
  private:

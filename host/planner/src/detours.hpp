@@ -1,4 +1,5 @@
-// Programmed motions without a pulse between two blocks: how fast their corners may be passed. Internal to the planner.
+// Programmed motions without a pulse between two blocks, and the speed at which their corners may be passed. Internal
+// to the planner.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +12,9 @@ class Detours {
  public:
   explicit Detours(const machine::Machine& machine) : junctions_(machine) {}
 
-  // Whether motions have come since the last block.
+  // Whether such motions have come since the last block.
   bool open() const { return open_; }
-  // One more, as a block of its own.
+  // Adds one, given as a block of its own.
   void pass(const Block& motion) {
     const Heading heading{motion.entry, motion.length, motion.speed, motion.linear};
     if (open_) {
@@ -24,12 +25,12 @@ class Detours {
     }
     last_ = motion;
   }
-  // One whose corners are not known.
+  // Adds one whose corners are unknown: they count as a stop.
   void stop() {
     detour_.speed = 0;
     open_ = true;
   }
-  // Up to the block that begins so.
+  // The corners up to a block with this heading.
   Detour to(const Heading& heading) const {
     Detour detour = detour_;
     if (detour.speed > 0) detour.speed = std::min(detour.speed, junctions_.speed(last_, heading));

@@ -10,7 +10,7 @@ struct FeedMotion {
   double jerk = 0;
   double clocks = 0;
   double end_rate = 0;
-  bool rests = false;  // at its end, whether the program stops there or not
+  bool rests = false;  // at rest at its end; the program need not stop there
 };
 
 struct FeedInstant {
@@ -23,22 +23,23 @@ struct Rates {
   double end;
 };
 
-// Of constant acceleration.
+// A motion of constant acceleration.
 FeedMotion steady(double rate, double end_rate, double ticks);
 
-// Of a ramp of constant acceleration (ticks per clock^2, either sign), what lies near rest raised to the rate of half a
-// tick from it: v^2 = 2 a s at s = 1/2. Slower, the tick there would hang.
+// The rates of a ramp of constant acceleration (ticks per clock^2, either sign). A rate near rest is raised to the rate
+// half a tick away from rest, v^2 = 2 a s at s = 1/2. At a lower rate the tick next to rest would take too long.
 Rates off_rest(double rate, double end_rate, double acceleration);
 
-// The highest or lowest rate inside the motion, which is where the acceleration changes its sign; where it does not,
-// the rate at its start.
+// The highest or lowest rate inside the motion, where the acceleration changes its sign; if it does not, the rate at
+// the start.
 double turning_rate(const FeedMotion& motion);
 
-// Where `distance` of the motion's `ticks` are over.
+// Time and rate after `distance` of the motion's `ticks`.
 FeedInstant instant(const FeedMotion& motion, double distance, double ticks);
 
-// When the distance has been gone from speed, acceleration and jerk on, of a motion that takes `duration` for `length`;
-// a little outside it at the speed that it has there. Newton's method between bounds. Any consistent units.
+// The time at which a motion has covered `distance`. Speed, acceleration and jerk are those at its beginning; it takes
+// `duration` for `length`. A distance a little outside the motion counts at the speed at that end. Newton's method
+// between bounds. Any consistent units.
 double time_at(double distance, double speed, double acceleration, double jerk, double duration, double length);
 
 }  // namespace trammel::planner

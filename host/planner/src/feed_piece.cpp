@@ -12,7 +12,8 @@ std::uint64_t fixed64(double rate) { return static_cast<std::uint64_t>(std::min(
 std::int64_t signed64(double change) { return static_cast<std::int64_t>(change * 0x1p64); }
 std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kMinRate, 0.5) * 0x1p32); }
 
-// Smooth motion does not come to its floor before the piece is over: four updates' change of rate are between them.
+// Keeps the floor below the rates of a smooth motion that goes on, by the change of rate in four updates, so that the
+// motion does not reach its floor before the piece is over.
 double spare_below(const FeedMotion& motion, bool smooth) {
   if (!smooth || motion.rests || motion.jerk == 0) return 0;
   return 4 * std::abs(kUpdate * (motion.acceleration + motion.clocks * motion.jerk));
@@ -20,8 +21,8 @@ double spare_below(const FeedMotion& motion, bool smooth) {
 
 }  // namespace
 
-// With U the clocks of an update, the mean of r + a t + j t^2 / 2 over the first is r + a U / 2 + j U^2 / 6; the next
-// mean is greater by U (a + j U), and that difference grows by j U^2 with each update.
+// U: clocks of an update. The mean of r + a t + j t^2 / 2 over the first update is r + a U / 2 + j U^2 / 6. The next
+// mean is greater by U (a + j U), and this difference grows by j U^2 per update.
 FeedPiece feed_piece(const FeedMotion& motion, std::uint64_t ticks, double lead, bool smooth) {
   FeedPiece piece;
   piece.clocks = motion.clocks;
@@ -33,7 +34,7 @@ FeedPiece feed_piece(const FeedMotion& motion, std::uint64_t ticks, double lead,
   const double rate = one_rate ? (static_cast<double>(ticks) - lead) / motion.clocks
                                : motion.rate + kUpdate / 2 * motion.acceleration + kUpdate * kUpdate / 6 * motion.jerk;
   command.rate = fixed64(std::max(rate, kMinRate));
-  // In less than an update it comes to nothing; the motion's acceleration has no jump there all the same.
+  // Within one update the card never adds the acceleration. Smooth pieces have it all the same: it has no jump.
   command.acceleration = one_rate && !smooth ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
   command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}) - spare_below(motion, smooth));
@@ -55,7 +56,7 @@ double overshoot(const driver::FeedCommand& command, const FeedMotion& motion, d
     const double whole = updates * (rate + before / 2 * (acceleration + (updates - 2) / 3 * jerk));
     return kUpdate * whole + (clocks - kUpdate * updates) * std::max(now, floor);
   };
-  // The first clock in which the last tick has come: from near it, then clock by clock.
+  // Finds the first clock at which the last tick has come: first a clock near it, then clock by clock.
   double clocks = std::floor(motion.clocks);
   for (int i = 0; i < 4; ++i) {
     const double step = std::floor((ticks - gone(clocks)) / motion.end_rate);

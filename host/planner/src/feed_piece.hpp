@@ -1,8 +1,8 @@
-// A feed piece as the card gets it, from its motion. Internal to the planner; pure.
+// Makes the command of a feed piece from its motion. Internal to the planner; pure.
 //
-// The feed generator holds a rate for one update (32 clocks) and then adds the acceleration, and to that the jerk: the
-// rates of a piece are the means of the planned rate over each update, so that positions at whole updates are the
-// plan's.
+// The feed generator holds a rate for one update (32 clocks). Then it adds the acceleration to the rate, and the jerk
+// to the acceleration. So the rates of a piece are the means of the planned rate over each update, and the positions at
+// whole updates are those of the plan.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,24 @@
 namespace trammel::planner {
 
 inline constexpr double kUpdate = card_map::constant::kUpdateClocks;
-// The card goes on at a piece's last rate for so many clocks after its last tick; these ticks are the next piece's.
+// Clocks for which the card continues at a piece's last rate after the piece's last tick. Ticks in this time belong to
+// the next piece.
 inline constexpr double kSwapClocks = 6;
 
 struct FeedPiece {
   driver::FeedCommand command;
   double highest_rate = 0;  // ticks per clock
   double clocks = 0;
-  std::uint64_t block = 0;  // where it begins
-  std::uint64_t begin = 0;  // tick
+  std::uint64_t block = 0;  // block in which it begins
+  std::uint64_t begin = 0;  // tick at which it begins
   bool stop = false;
 };
 
-// Of `ticks`, the first `lead` of which pass before `motion` begins. `smooth`: acceleration has no jumps.
+// A piece of `ticks`, of which the first `lead` pass before `motion` begins. `smooth`: acceleration has no jumps.
 FeedPiece feed_piece(const FeedMotion& motion, std::uint64_t ticks, double lead, bool smooth);
 
-// Ticks, and the part of one, that the card goes beyond the piece's last one before the next piece's rate is in force,
-// when `motion` began `lead` ticks into it: rate, acceleration and jerk as they are sent, update by update.
+// Ticks, with fraction, that the card makes after the piece's last tick until the next piece's rate is in force.
+// Computed update by update, with rate, acceleration and jerk as sent. `motion` begins `lead` ticks into the piece.
 double overshoot(const driver::FeedCommand& command, const FeedMotion& motion, double lead);
 
 }  // namespace trammel::planner

@@ -8,9 +8,10 @@
 namespace trammel::planner {
 namespace {
 
-// Its centre w, seen from the corner, is a radius r off both sides, to the inside of the turn (s = 1 to the left, n the
-// sides' normals to the left, c their curvatures): w n = s r + c m / 2 with m = w w - r r, for lines and for arcs. The
-// two equations for w are linear in r and m, and w w = m + r r is then quadratic in m alone.
+// The corner is the origin, w the centre of the arc and r its radius; s is 1 for a turn to the left, else -1; n is the
+// normal of a side to its left, c its curvature. The arc touches a side, which may be a line or an arc, on the inside
+// of the turn: w n = s r + c m / 2, with m = w w - r r. The equations of the two sides give w as a linear function of r
+// and m. Then w w = m + r r is a quadratic equation for m alone.
 class FilletCorner {
  public:
   FilletCorner(const Side& from, const Side& to, double sine)
@@ -27,7 +28,7 @@ class FilletCorner {
   }
 
   std::optional<Fillet> of_radius(double radius) const {
-    // The smaller root: the one that a corner of lines has.
+    // The smaller root is that of a corner of two lines.
     const double a = bent_x_ * bent_x_ + bent_y_ * bent_y_;
     const double b = 1 - 2 * radius * (radial_x_ * bent_x_ + radial_y_ * bent_y_);
     const double c = radius * radius * tangent_square_;
@@ -40,7 +41,7 @@ class FilletCorner {
     found.centre_x = radius * radial_x_ + m * bent_x_;
     found.centre_y = radius * radial_y_ + m * bent_y_;
     found.clockwise = turn_ < 0;
-    // On the side of an arc where it turns about its centre.
+    // If an arc turns the same way as the corner, the radius must be smaller than that of the arc.
     if (!(turn_ * from_.curvature * radius < 1) || !(turn_ * to_.curvature * radius < 1)) return std::nullopt;
     found.before = -along(from_, found);
     found.behind = along(to_, found);
@@ -49,7 +50,7 @@ class FilletCorner {
   }
 
  private:
-  // Where it touches a side.
+  // Distance along the side from the corner to the point of contact.
   static double along(const Side& side, const Fillet& at) {
     const double way = at.centre_x * side.x + at.centre_y * side.y;
     if (side.curvature == 0) return way;
@@ -60,7 +61,7 @@ class FilletCorner {
 
   Side from_;
   Side to_;
-  double tangent_square_;  // of half the angle
+  double tangent_square_;  // tan^2 of half the angle
   double turn_;
   double angle_ = 0;
   double radial_x_ = 0;  // w = radius * radial + m * bent
@@ -80,7 +81,7 @@ std::optional<Fillet> fillet(const Side& from, const Side& to, double sine, doub
     return one && one->distance <= tolerance && one->before > 0 && one->before <= from.most && one->behind > 0 &&
            one->behind <= to.most && one->sweep > kMinSweep && one->sweep < driver::kPi;
   };
-  // Of two lines.
+  // Two lines: a closed form, and the first guess for arcs.
   const double taken = std::min({tolerance * (1 + cosine) / sine, from.most, to.most});
   double low = taken * cosine / sine;
   if (from.curvature == 0 && to.curvature == 0) {

@@ -16,7 +16,7 @@ constexpr double kEven = 1e-6;
 double corner_speed_square(double acceleration, double deviation, double sine, double shorter) {
   const double cosine = std::sqrt(1 - sine * sine);
   const double angle = 2 * driver::arc_tangent(sine, cosine);
-  // 1 - cosine without its rounding.
+  // sine^2 / (1 + cosine) is 1 - cosine without cancellation.
   const double formula = acceleration * deviation * cosine * (1 + cosine) / (sine * sine);
   return std::min(formula, acceleration * shorter / angle);
 }
@@ -61,7 +61,7 @@ double Junctions::corner_square(const Block& from, const Heading& to, const Turn
   return corner_speed_square(acceleration, deviation_, std::min(1.0, size / 2), std::min(from.length, to.length));
 }
 
-// The largest acceleration along a change of direction, of this size, that no joint's own limit forbids.
+// The largest acceleration along a change of direction, whose length is `size`, that the joints' own limits allow.
 double Junctions::joints_allow(const Direction& change, double size) const {
   double acceleration = kNoLimit;
   if (!kinematics_.has_joint_limits()) return acceleration;
@@ -72,7 +72,7 @@ double Junctions::joints_allow(const Direction& change, double size) const {
   return acceleration;
 }
 
-// The speed at which no axis outside the angle, or no axis at all, jumps by more than it may.
+// The speed at which no axis outside the angle (`all`: no axis) jumps by more than acceleration and deviation allow.
 double Junctions::jump_speed(const Block& from, const Heading& to, bool all) const {
   double speed = kNoLimit;
   for (std::size_t i = 0; i < axes_; ++i) {

@@ -11,16 +11,18 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kTicksPerPulse = 128;    // steps even to 1/64
-constexpr double kMaxTicks = 0x1p38;      // of a block; a command has 40 bits, and pieces span blocks
-constexpr double kMinTickRate = 0x1p-30;  // ticks a clock; four times the finest floor
-constexpr double kMaxTickRate = 0.9;      // ticks a clock; above it shapers have no jitter left, holds no evenness
-constexpr unsigned kMinAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
-// Blocks that are planned, but whose stop distances wait for what follows.
+constexpr double kTicksPerPulse = 128;    // makes steps even to 1/64
+constexpr double kMaxTicks = 0x1p38;      // of a block; a command has 40 bits, and a piece can span blocks
+constexpr double kMinTickRate = 0x1p-30;  // ticks per clock; four times the finest floor
+// Ticks per clock. Above this, the shapers have no slack for jitter, and holds are uneven.
+constexpr double kMaxTickRate = 0.9;
+// Cards with fewer axes decode lines faster; they use the rule for four axes.
+constexpr unsigned kMinAxes = 4;
+// Room for blocks that are planned, but whose stop distances depend on later blocks.
 constexpr std::size_t kSpare = 4096;
-static_assert(kSpare >= 3 * Quantiser::kMaxBlocks + 2);  // one is read behind the window, one ends at rest
+static_assert(kSpare >= 3 * Quantiser::kMaxBlocks + 2);  // plus one read after the window, and one that ends at rest
 
-// In the card's queue, with all its axes.
+// Size of a command in the card's queue, with all axes.
 std::uint64_t halfwords_of(card_map::Opcode opcode, unsigned axes) {
   const auto mask = static_cast<std::uint8_t>((1U << axes) - 1);
   return card_map::queue_halfwords(*card_map::find_command(static_cast<std::uint8_t>(opcode)), mask);
@@ -112,9 +114,9 @@ void Planner::LookAhead::read_block() {
   }
 }
 
-// Of its commands in the geometry queue.
+// Halfwords of the block's commands in the geometry queue.
 std::uint64_t Planner::LookAhead::halfwords(const Block& block) const {
-  // Pulses may change with any block.
+  // Any block may change the pulses.
   const std::uint64_t outputs = (switches(block) ? halfwords_of(card_map::Opcode::Output, axes_) : 0) +
                                 (pwm_ ? halfwords_of(card_map::Opcode::Pwm, axes_) : 0);
   switch (block.geometry) {
@@ -165,7 +167,7 @@ void Planner::LookAhead::push_span(const PathEntry& entry, double exit_speed) {
   plan_->push({block.length, block.speed, block.acceleration, block.jerk, exit_speed, block.curve});
 }
 
-// An arc turns into each direction of its plane.
+// An arc may go through every direction of its plane.
 double Planner::LookAhead::hold_speed(const Block& block) const {
   double speed = std::numeric_limits<double>::infinity();
   for (std::size_t axis = 0; axis < hold_speeds_.size(); ++axis) {
@@ -176,7 +178,7 @@ double Planner::LookAhead::hold_speed(const Block& block) const {
   return speed;
 }
 
-// Length and ticks go on through stops: a path has the same ticks wherever the program stops.
+// Length and ticks continue across stops, so that the ticks of a path do not depend on where the program stops.
 void Planner::LookAhead::place(PathEntry& entry, double density) {
   if (density != ticks_.density) {
     ticks_.density = density;
@@ -192,23 +194,24 @@ void Planner::LookAhead::place(PathEntry& entry, double density) {
   entry.end_ticks = ticks_.end_tick = std::max(ticks_.base_tick + ticks, least);
 }
 
-// Ticks a mm: as many as evenness wants and the clock allows.
+// Ticks per mm: as many as even steps need and the clock allows.
 double Planner::LookAhead::wanted_density(const Block& block) const {
   const double density = std::min(even_density(block), kMaxTickRate * clock_hz_ / block.speed);
   return std::min(std::max(density, least_density(block)), kMaxTicks / block.length);
 }
 
-// Steps even to 1/64, and a line that lasts until the next one is decoded.
+// Makes steps even to 1/64, and makes a line last until the next one is decoded.
 double Planner::LookAhead::even_density(const Block& block) const {
   return std::max(kTicksPerPulse * block.pulses_per_mm, gap_free_ticks_ / block.length);
 }
 
-// What the pulses and the finest rate need.
+// The density that the pulses and the finest rate need.
 double Planner::LookAhead::least_density(const Block& block) const {
   return std::max(kMinTickRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length);
 }
 
-// Each change of density costs a piece: where the clock is the limit, half of what it allows serves too.
+// Whether the block may keep this density. Each change of density costs a piece, so half of the density that the clock
+// allows is enough if the clock is the limit.
 bool Planner::LookAhead::suits(double density, const Block& block) const {
   const double most = std::min(kMaxTickRate * clock_hz_ / block.speed, kMaxTicks / block.length);
   const double least = std::max(std::min(even_density(block), most / 2), least_density(block));

@@ -17,7 +17,7 @@ class Planner::LookAhead {
   LookAhead(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
             const PlannerSettings& settings);
 
-  // Plans until the first block is known, reading as many as it takes; none after the last.
+  // Plans until the first block is complete, and reads as many blocks as this takes. Null after the last block.
   PathEntry* first();
   // How many pieces begin in the first block.
   std::uint64_t pieces() const { return quantiser_.count(path_.begin()); }
@@ -43,20 +43,21 @@ class Planner::LookAhead {
 
   BlockBuilder& blocks_;
   PlannerSettings settings_;
-  double clock_hz_;  // enabled clocks a second
+  double clock_hz_;  // enabled clocks per second
   unsigned axes_;    // of the card
-  bool pwm_;         // S sets pulses
+  bool pwm_;         // S sets the duty of the pulses on the outputs
   std::uint64_t line_halfwords_;
   double gap_free_ticks_;
   Junctions junctions_;
-  std::vector<double> hold_speeds_;  // by axis, mm/s: from there a hold takes all that it may of the acceleration
+  // By axis, mm/s: at this speed a hold by SLEW takes as much acceleration as holds may take.
+  std::vector<double> hold_speeds_;
   PathRing path_;
   Quantiser quantiser_;
   std::unique_ptr<SpeedPlan> plan_;
-  PathEntry* tail_ = nullptr;  // moves, and its span waits for the corner at its end
+  PathEntry* tail_ = nullptr;  // the last motion; its span waits for the corner at its end
   PathTicks ticks_;            // of the last motion
-  std::uint64_t queued_ = 0;   // halfwords
-  bool draining_ = false;      // a run has ended
+  std::uint64_t queued_ = 0;   // halfwords of all blocks read so far
+  bool draining_ = false;      // a run has ended, and its phases are being taken
   bool ended_ = false;
 };
 

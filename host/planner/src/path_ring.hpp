@@ -1,4 +1,4 @@
-// The blocks on their way through look-ahead and quantiser, by the order in which they came. Internal to the planner.
+// The blocks in look-ahead and quantiser, in the order of the program. Internal to the planner.
 #pragma once
 
 #include <cstddef>
@@ -9,23 +9,24 @@
 
 namespace trammel::planner {
 
-// Length and feed ticks are counted from the start of the program. What does not move has ticks too: none.
+// Length and feed ticks count from the start of the program. A block that does not move has no ticks.
 struct PathEntry {
   Block block;
   double begin = 0;  // mm
   double end = 0;
-  double density = 0;     // feed ticks a mm
-  double hold_speed = 0;  // mm/s from which a hold by SLEW takes all that it may of an axis's acceleration
+  double density = 0;  // feed ticks per mm
+  // mm/s: at this speed a hold by SLEW takes as much of an axis's acceleration as holds may take.
+  double hold_speed = 0;
   std::uint64_t begin_ticks = 0;
   std::uint64_t end_ticks = 0;
-  std::uint64_t queued = 0;     // halfwords of the geometry queue, counted likewise: before its commands
-  std::uint64_t halfwords = 0;  // > 0, of these
-  bool cut = false;             // a piece ends with it: another class or density follows, or a stop
+  std::uint64_t queued = 0;     // halfwords of the geometry queue before its commands, from the start
+  std::uint64_t halfwords = 0;  // > 0, halfwords of its commands
+  bool cut = false;             // a piece must end with it: another class, another density or a stop follows
   bool stop = false;            // ends at rest
-  double jump = 0;              // at its end, at a speed of 1 mm/s: of an axis's velocity, mm/s
-  double bend = 0;              // and of the acceleration, mm/s^2
-  // From the quantiser.
-  bool timed = false;  // the rest is known
+  double jump = 0;              // jump of an axis's velocity at its end, mm/s at a speed of 1 mm/s
+  double bend = 0;              // jump of the acceleration at its end, mm/s^2 at a speed of 1 mm/s
+  // Set by the quantiser.
+  bool timed = false;  // the fields below are known
   bool short_sight = false;
   double seconds = 0;
   double speed = 0;      // mm/s, the highest
@@ -36,13 +37,13 @@ class PathRing {
  public:
   explicit PathRing(std::size_t capacity) : entries_(capacity) {}
 
-  // Counted from the first block of all.
+  // Indices count from the first block of the program.
   std::uint64_t begin() const { return begin_; }
   std::uint64_t end() const { return end_; }
   bool full() const { return end_ - begin_ == entries_.size(); }
   PathEntry& operator[](std::uint64_t i) { return entries_[static_cast<std::size_t>(i % entries_.size())]; }
   const PathEntry& operator[](std::uint64_t i) const { return entries_[static_cast<std::size_t>(i % entries_.size())]; }
-  // The next one, with the content of an old one.
+  // Appends an entry, which still has the content of an old one.
   PathEntry& push() { return (*this)[end_++]; }
   void pop() { ++begin_; }
   void unpush() { --end_; }

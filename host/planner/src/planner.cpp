@@ -11,8 +11,8 @@
 namespace trammel::planner {
 namespace {
 
-constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks of one command
-constexpr double kReached = 1 - 1e-4;                              // of the speed that a program wants
+constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks per command
+constexpr double kReached = 1 - 1e-4;  // share of the program's speed from which on it counts as reached
 
 SpeedLimit limit_of(const PathEntry& entry) {
   const Block& block = entry.block;
@@ -21,7 +21,7 @@ SpeedLimit limit_of(const PathEntry& entry) {
   return entry.short_sight ? SpeedLimit::kWindow : SpeedLimit::kAcceleration;
 }
 
-// `ticks` shared out evenly over `count` paths.
+// Divides `ticks` evenly among `count` paths.
 class Shares {
  public:
   Shares(std::uint64_t ticks, std::uint64_t count) : share_(ticks / count), more_(ticks % count), count_(count) {}
@@ -95,7 +95,7 @@ bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
   return true;
 }
 
-// Before the block's other commands: they take effect where the path before ends.
+// Put before the block's other commands, because they take effect at the end of the path before.
 void Planner::put_outputs(PlannedBlock& planned, driver::CommandSink& sink) {
   if (!switches(planned.block)) return;
   ++planned.commands;
@@ -104,7 +104,7 @@ void Planner::put_outputs(PlannedBlock& planned, driver::CommandSink& sink) {
   sink.put(other_ = planned.block.outputs);
 }
 
-// Where it changes. What follows the speed is dark in a dwell by itself.
+// Put if the pulses change. A duty that follows the speed is 0 in a dwell without a command.
 void Planner::put_pulses(PlannedBlock& planned, const PathEntry& entry, driver::CommandSink& sink) {
   const Block& block = entry.block;
   if (!pwm_ || (block.power_follows && block.power != 0 && !moves(block))) return;
@@ -120,7 +120,7 @@ void Planner::put_pulses(PlannedBlock& planned, const PathEntry& entry, driver::
   sink.put(other_ = pulses);
 }
 
-// The scale is that of the path's own ticks, where rounding has given it more or less than its length has.
+// Uses the density of the path's own ticks if rounding has given the path more or fewer ticks than its length has.
 driver::PwmCommand Planner::pulses_of(const PathEntry& entry) const {
   constexpr double kFull = 65535;
   constexpr double kSameDensity = 1e-3;

@@ -9,7 +9,7 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kShortest = 4 * kUpdate;  // clocks; what is shorter makes one piece with what follows
+constexpr double kShortest = 4 * kUpdate;  // clocks; shorter phases are joined with the next ones
 
 std::unique_ptr<PieceShaper> shaper_of(bool smooth, double clock_hz) {
   if (smooth) return std::make_unique<SCurvePieces>();
@@ -62,7 +62,7 @@ void Quantiser::add(const Phase& phase) {
   stops_.complete();
 }
 
-// From a stop. The origin of the scale is arbitrary: lengths go on from any place.
+// Begins a run, from a stop. The origin of the scale is arbitrary: lengths may continue from any place.
 void Quantiser::begin_run(bool waits) {
   const PathEntry& block = path_[at_.block];
   at_.moving = true;
@@ -75,8 +75,8 @@ void Quantiser::begin_run(bool waits) {
   shaper_->start(scale_);
 }
 
-// Where ticks become longer, those that pass at the old rate put the motion ahead of its time. Its speed is still that
-// of its time: what it is ahead by counts as gone.
+// If ticks become longer, those that pass at the old rate put the motion ahead of its speed profile. Its speed still
+// follows the profile: the ticks by which the motion is ahead count as done.
 void Quantiser::change_density(double density) {
   const double before = scale_.ticks_per_clock_at_1_mm_s;
   scale_.ticks_per_clock_at_1_mm_s = density / scale_.clock_hz;
@@ -85,10 +85,10 @@ void Quantiser::change_density(double density) {
   shaper_->change_density(scale_, sent_.lead.ahead);
 }
 
-// The tick at which a phase ends at at_.mm, in the block or where it begins.
+// The end tick of a phase that ends at at_.mm, in the block or at its beginning.
 std::uint64_t Quantiser::end_tick(const Phase& phase, const PathEntry& block) const {
-  // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone, and
-  // what rounding leaves beyond a cut is no piece.
+  // A phase that ends with a block ends at the block's tick. The next phase may be for the next block's limits only,
+  // and the remainder that rounding leaves after a cut is not a piece.
   constexpr double kSame = 1e-9;  // mm
   const bool corner = shaper_->ends_at_corner(phase);
   std::uint64_t tick = 0;
@@ -100,11 +100,12 @@ std::uint64_t Quantiser::end_tick(const Phase& phase, const PathEntry& block) co
     const double exact = (at_.mm - at_.base_mm) * scale_.ticks_per_clock_at_1_mm_s * scale_.clock_hz;
     tick = at_.base_tick + static_cast<std::uint64_t>(std::max(0.0, shaper_->end_tick(phase, exact)));
   }
-  // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
+  // The tick must be neither before the end of the last piece nor after the block: a block may have more ticks than its
+  // length.
   return std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks));
 }
 
-// Where a tick is, on the scale that is in force.
+// Place of a tick, on the present scale.
 double Quantiser::millimetres(std::uint64_t tick) const {
   const double ticks =
       tick < at_.base_tick ? -static_cast<double>(at_.base_tick - tick) : static_cast<double>(tick - at_.base_tick);
@@ -136,7 +137,7 @@ PhasePart Quantiser::part_of(const Portion& portion) const {
   return part;
 }
 
-// Makes a piece of the part, which is true then, or adds it to what is pending.
+// Makes a piece of the part and returns true, or adds the part to the pending phases and returns false.
 bool Quantiser::shape(const Phase& phase, const Portion& portion, const PhasePart& part) {
   const auto behind = [&](bool all) {
     const double lead = all ? sent_.lead.within(static_cast<double>(part.ticks)) : 0;
@@ -182,8 +183,8 @@ void Quantiser::put(const FeedMotion& motion, std::uint64_t end_tick, bool stop)
   pending_.end = end_tick;
 }
 
-// The largest by which a hold from the piece's highest speed takes no more of an axis's acceleration than one by SLEW
-// takes at hold_speed, in all blocks that the piece runs through.
+// The largest slew shift with which a hold from the piece's highest speed takes no more of an axis's acceleration than
+// a hold by SLEW takes at hold_speed, in all blocks that the piece runs through.
 std::uint8_t Quantiser::slew_shift(const FeedPiece& piece, std::uint64_t end_tick) const {
   if (!slew_shifts_) return 0;
   double most = std::numeric_limits<double>::infinity();

@@ -4,7 +4,7 @@
 
 namespace trammel::planner {
 
-// The commands of a block have equal ticks, and pieces begin anywhere in it.
+// The commands of a block count as equally long in ticks. A piece may begin anywhere in a block.
 double QueuedPaths::held(std::uint64_t index, std::uint64_t tick) {
   const auto fit = static_cast<double>(halfwords_);
   const PathEntry& begin = path_[index];

@@ -1,4 +1,4 @@
-// How far along the path the card's queue of paths reaches. Internal to the planner.
+// The part of the path that is in the card's queue of paths. Internal to the planner.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace trammel::planner {
 
-// What the card's queues hold.
+// Capacities of the card's queues.
 struct QueueLimits {
-  std::uint64_t halfwords = 0;  // of geometry
-  std::uint64_t pieces = 0;
+  std::uint64_t halfwords = 0;  // geometry queue
+  std::uint64_t pieces = 0;     // feed queue
 };
 
 class QueuedPaths {
@@ -24,19 +24,18 @@ class QueuedPaths {
   // Nothing follows the last block in the ring.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
-  // Whether so many halfwords lie between the end of block `from` and the begin of block `to`.
+  // Whether a full queue of halfwords lies between the end of block `from` and the beginning of block `to`.
   bool covers(std::uint64_t from, std::uint64_t to) const {
     return path_[to].queued >= path_[from].queued + path_[from].halfwords + halfwords_;
   }
-  // The tick up to which paths are queued when `tick`, in block `index`, is the first one in the queue; that of the
-  // last block in the ring at most, and kUnlimited where the program ends before. From call to call `tick` does not
-  // fall.
+  // The tick up to which paths are queued if the first tick in the full queue is `tick`, in block `index`. At most the
+  // end of the last block in the ring; kUnlimited if the program ends before. `tick` must not fall from call to call.
   double held(std::uint64_t index, std::uint64_t tick);
 
  private:
   const PathRing& path_;
   std::uint64_t halfwords_;
-  std::uint64_t last_ = 0;  // block, with whose commands the queue ends
+  std::uint64_t last_ = 0;  // the block in whose commands the queue ends
   bool ended_ = false;
 };
 

@@ -30,12 +30,12 @@ Rise::State Rise::Part::at(double time) const {
   return {from.place + length, from.time + time, speed, end};
 }
 
-// When the length is done, not more than the part's.
+// Time at which the part has covered `length`, which is at most its own.
 double Rise::Part::time_at(double length) const {
   return rising_time(length, from.speed, from.acceleration, (to - from.acceleration) / duration, duration);
 }
 
-// When the speed is reached, which is not above that at its end.
+// Time at which the part reaches `speed`, which is at most that at its end.
 double Rise::Part::time_to(double speed) const {
   const double gain = std::max(0.0, speed - from.speed);
   const double twice = 2 * (to - from.acceleration) / duration;
@@ -73,7 +73,7 @@ double Rise::plan(SpeedWindow::Walk walk, double low, double high) {
   return end().place;
 }
 
-// All with the same limits.
+// A ramp with the same limits all along.
 void Rise::lone(double low, double high, const RampLimits& limits) {
   const double rise = limits.acceleration / limits.jerk;
   const double change = high - low;
@@ -86,7 +86,7 @@ void Rise::lone(double low, double high, const RampLimits& limits) {
   parts_.push_back({end(), bend, 0, 0});
 }
 
-// Through the last stretch, or up to the speed, as fast as it allows.
+// Accelerates as the last stretch allows, to its end or to the speed `top`.
 void Rise::climb(double top) {
   const SpeedWindow::Stretch& stretch = stretches_.back();
   const std::size_t index = stretches_.size() - 1;
@@ -105,7 +105,7 @@ void Rise::climb(double top) {
   parts_.push_back({now, 2 * length / (now.speed + speed), most, index});
 }
 
-// In steps of speed, each with the acceleration and the jerk that its highest speed leaves.
+// Climbs in steps of speed, each with the acceleration and the jerk that are left at its highest speed.
 void Rise::climb_arc(SpeedWindow::Stretch arc) {
   const SpanAcceleration acceleration(*arc.arc);
   bool entered = false;
@@ -128,7 +128,7 @@ void Rise::climb_arc(SpeedWindow::Stretch arc) {
   }
 }
 
-// Where a stretch begins, its acceleration is kept.
+// Adds a stretch. At its beginning its limit of acceleration must hold already.
 void Rise::enter(const SpeedWindow::Stretch& next) {
   const double most = next.limits.acceleration;
   if (end().acceleration > most) {
@@ -137,7 +137,7 @@ void Rise::enter(const SpeedWindow::Stretch& next) {
   stretches_.push_back(next);
 }
 
-// At the speed no more acceleration than `most`, unless the last stretch ends before.
+// Lowers the acceleration to `most` by the time that `speed` is reached, unless the last stretch ends before.
 void Rise::relax(double most, double speed) {
   Place place;
   if (!relaxes_in_stretch(most, speed, place)) {
@@ -146,8 +146,8 @@ void Rise::relax(double most, double speed) {
   turn(place, most, true);
 }
 
-// The place to fall from, where it is in the last stretch and the fall ends there. At one jerk the square of the
-// acceleration is a straight line over the speed, so that nothing is searched.
+// The place at which the acceleration must begin to fall, if it and the end of the fall are in the last stretch. At
+// constant jerk the square of the acceleration is linear in the speed, so no search is needed.
 bool Rise::relaxes_in_stretch(double most, double speed, Place& place) const {
   const std::size_t last = stretches_.size() - 1;
   const double jerk = stretches_[last].limits.jerk;
@@ -164,7 +164,7 @@ bool Rise::relaxes_in_stretch(double most, double speed, Place& place) const {
   return false;
 }
 
-// Ends at the speed, if it can within the stretches; `anywhere`: behind them, too.
+// Ends the rise at the speed `high`, if this is possible within the stretches; `anywhere`: also after them.
 bool Rise::arrive(double high, bool anywhere) {
   const State last = end();
   if (!anywhere && (last.speed < high || last.place < arrival_)) return false;
@@ -175,10 +175,10 @@ bool Rise::arrive(double high, bool anywhere) {
   return true;
 }
 
-// The last place from which `excess` is not above 0; it rises along the way.
+// The last place at which `excess` is not above 0; it rises along the way.
 template <typename Excess>
 Rise::Place Rise::last_place(Excess excess) const {
-  std::size_t above = parts_.size();  // no later part begins where it is not
+  std::size_t above = parts_.size();  // `excess` is above 0 where this part and all later ones begin
   std::size_t part = above - 1;
   for (std::size_t step = 1; part > 0 && excess({part, 0}) > 0; step *= 2) {
     above = part;
@@ -191,7 +191,7 @@ Rise::Place Rise::last_place(Excess excess) const {
   return {part, highest(0, parts_[part].duration, [&](double time) { return excess({part, time}); })};
 }
 
-// Falls to the acceleration from the place on. `bounded`: no farther than the last stretch goes.
+// Lowers the acceleration to `to`, from the place on. `bounded`: to the end of the last stretch at most.
 Rise::State Rise::fall(const Place& place, double to, bool bounded, std::vector<Part>* parts) const {
   State now = parts_[place.part].at(place.time);
   for (std::size_t i = parts_[place.part].stretch; now.acceleration > to; ++i) {
@@ -204,7 +204,7 @@ Rise::State Rise::fall(const Place& place, double to, bool bounded, std::vector<
       const double left = stretch.end - now.place;
       part.shorten(left > 0 ? part.time_at(left) : 0);
     }
-    // On an arc the next step's jerk follows at its speed.
+    // On an arc, the jerk of the next step holds from that step's speed on.
     const bool rises = !last && stretches_[i + 1].arc == stretch.arc && part.end().speed > stretch.top;
     if (rises) part.shorten(part.time_to(stretch.top));
     if (parts != nullptr) parts->push_back(part);

@@ -1,6 +1,6 @@
-// The quickest rise of the speed along stretches whose limits change: as much acceleration as each has, changed by its
-// jerk at most, and none at either end. The way backwards it is the quickest fall. + - * / and sqrt: the same on every
-// host. Internal to the planner.
+// The fastest rise of the speed along stretches with different limits: as much acceleration as each stretch allows,
+// changed by its jerk at most, and none at either end. Along a backward walk it is the fastest fall. Uses + - * / and
+// sqrt only: the same on every host. Internal to the planner.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,19 @@ namespace trammel::planner {
 
 class Rise {
  public:
-  // Up to this ratio two speeds are the same, and the way between them has no length. A speed is only known to its
-  // rounding, and the length of a short ramp goes with the square root of the difference: of two speeds that differ by
-  // an ulp it would be rounding alone, at 100 mm/s and 30,000 mm/s^3 yet 200 nm.
+  // Two speeds up to this ratio are the same, and the way between them has no length. A speed is only known up to
+  // rounding, and the length of a short ramp is proportional to the square root of the difference. For two speeds that
+  // differ by an ulp, the length would be rounding alone: still 200 nm at 100 mm/s and 30,000 mm/s^3.
   static constexpr double kSameSpeed = 1 + 0x1p-30;
 
   explicit Rise(std::size_t spans);
 
-  // From `low` to `high` on the way, seen from its beginning; the last span's limits go on behind its end. Its length.
+  // Plans from `low` to `high` along the walk and returns the length. The limits of the last span continue after its
+  // end.
   double plan(SpeedWindow::Walk walk, double low, double high);
-  // Of the last one, which was the way forwards: puts its phases behind others.
+  // Appends the phases of the last plan, if its walk was forward.
   void rising(std::vector<Phase>& phases) const;
-  // The same where it was the way backwards.
+  // Appends them if its walk was backward.
   void falling(std::vector<Phase>& phases) const;
 
  private:
@@ -33,11 +34,11 @@ class Rise {
     double speed = 0;
     double acceleration = 0;  // not below 0
   };
-  // The acceleration changes evenly.
+  // A part with constant jerk.
   struct Part {
     State from;
     double duration = 0;
-    double to = 0;  // acceleration
+    double to = 0;  // acceleration at the end
     std::size_t stretch = 0;
 
     State at(double time) const;
@@ -68,7 +69,7 @@ class Rise {
   std::vector<Part> parts_;
   std::vector<Part> bend_;
   State start_;
-  double arrival_ = 0;  // not tried again before there
+  double arrival_ = 0;  // arrive() need not try again before this place
 };
 
 }  // namespace trammel::planner

@@ -1,4 +1,5 @@
-// A cube root from + - * / alone: the mathematics library's differs between hosts. Internal to the planner; pure.
+// A cube root from + - * / alone, because that of the mathematics library differs between hosts. Internal to the
+// planner; pure.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +7,9 @@
 
 namespace trammel::planner {
 
-// x a normal number above 0; off by 2^-51 of it at most.
+// x: a normal number above 0. Error at most 2^-51 of the result.
 inline double cube_root(double x) {
-  // A third of the exponent is within 6 % of it; Newton's steps square the error.
+  // A third of the exponent gives the root within 6 %; each of Newton's steps squares the error.
   std::uint64_t bits = 0;
   std::memcpy(&bits, &x, sizeof bits);
   bits = bits / 3 + (std::uint64_t{0x2A9F} << 48);

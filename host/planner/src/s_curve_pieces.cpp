@@ -9,20 +9,20 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kSteady = 1e-5;  // change of a rate that is none
+constexpr double kSteady = 1e-5;  // a smaller relative change of a rate counts as none
 constexpr double kRest = 1e-6;    // mm/s
 
-// One tick from rest under a jerk j: s = j t^3 / 6 = 1 and v = j t^2 / 2 give v^3 = 9/2 j, and t = 3 / v.
+// The first tick from rest under a jerk j: s = j t^3 / 6 = 1 and v = j t^2 / 2 give v^3 = 9/2 j, and t = 3 / v.
 constexpr double kCubeOfFloor = 4.5;
 constexpr double kTimeOfLastTick = 3;
 
 double end_acceleration(const Phase& phase) { return phase.acceleration + phase.duration * phase.jerk; }
 
-// A phase's jerk is no guide far outside it, where it would end the feed before the ticks end.
+// Far outside its phase a jerk gives wrong rates, which would end the feed before the ticks end.
 bool rate_off_by_half(double rate, double right) { return std::abs(rate - right) > right / 2; }
 
-// A part that begins before its phase, or ends behind it, by a part of a tick has more acceleration there than the
-// phase. With no more than `most` it makes the same ticks between the same rates; its other end has a little less.
+// A part that begins or ends outside its phase by a fraction of a tick has more acceleration there than the phase has.
+// Limited to `most`, it makes the same ticks between the same rates, with a little less acceleration at its other end.
 void keep_within(double most, double ticks, FeedMotion& motion) {
   const double begin = motion.acceleration;
   const double end = begin + motion.clocks * motion.jerk;
@@ -42,8 +42,8 @@ void keep_within(double most, double ticks, FeedMotion& motion) {
   motion.clocks = clocks;
 }
 
-// From the rate that the stop before ends at, to the end's rate, with the jerk that makes the ticks: a little less
-// acceleration at the end keeps it below the planned one. Unchanged where the ticks are too few.
+// Begins at the rate at which the stop before ended, and keeps the end rate, with the jerk that gives the ticks. A
+// little less acceleration at the end keeps the jerk below the planned one. Unchanged if there are too few ticks.
 void begin_at(double rate, double ticks, FeedMotion& motion) {
   constexpr double kLess = 0.001;
   const double gain = motion.end_rate - rate;
@@ -61,7 +61,7 @@ void begin_at(double rate, double ticks, FeedMotion& motion) {
   }
 }
 
-// The tick next to rest would take three times as long as at the floor: it is at the floor.
+// At the planned rates, the tick next to rest would take three times as long as at the floor. It is made at the floor.
 void keep_off_rest(bool rests, bool rested, double ticks, FeedMotion& motion) {
   const double floor = cube_root(kCubeOfFloor * std::abs(motion.jerk));
   motion.rests = rests;
@@ -75,7 +75,8 @@ void keep_off_rest(bool rests, bool rested, double ticks, FeedMotion& motion) {
 
 }  // namespace
 
-// A ramp has less than the most acceleration in the tick in which it reaches it from rest or leaves it for a stop.
+// In the tick in which a ramp reaches its full acceleration from rest, or leaves it for a stop, the ramp has less than
+// the full acceleration.
 double SCurvePieces::end_tick(const Phase& phase, double exact) const {
   constexpr double kAlmost = 1e-9;
   if (phase.acceleration >= 0 && phase.jerk > 0) return exact + kAlmost;
@@ -83,7 +84,7 @@ double SCurvePieces::end_tick(const Phase& phase, double exact) const {
   return exact + 0.5;
 }
 
-// Less than two updates of a ramp are not worth a piece: the next one begins earlier.
+// Pending phases of less than two updates on a ramp get no piece of their own: the next piece begins earlier.
 bool SCurvePieces::drops(const Pending& pending) const {
   const double change = std::abs(pending.motion.end_rate - pending.motion.rate);
   return pending.motion.clocks < 2 * kUpdate && change > kSteady * pending.motion.rate;
@@ -95,7 +96,7 @@ FeedMotion SCurvePieces::motion(const Phase& phase, const PhasePart& part, doubl
   return phase.jerk == 0 ? even(phase, from, part.to, ticks) : bent(phase, part, from, ticks);
 }
 
-// Of a phase without jerk.
+// The motion of a phase without jerk.
 FeedMotion SCurvePieces::even(const Phase& phase, double from, double to, double ticks) const {
   const double per_speed = scale_.ticks_per_clock_at_1_mm_s;
   const auto rate_at = [&](double place) {
@@ -106,12 +107,12 @@ FeedMotion SCurvePieces::even(const Phase& phase, double from, double to, double
   return steady(rates.begin, rates.end, ticks);
 }
 
-// Of a phase with jerk, from `from` on.
+// The motion of a phase with jerk, from `from` on.
 FeedMotion SCurvePieces::bent(const Phase& phase, const PhasePart& part, double from, double ticks) const {
   const double per_speed = scale_.ticks_per_clock_at_1_mm_s;
   const double clock_hz = scale_.clock_hz;
-  // A stop in mid path, for a window that is too short, is at a whole tick, too: the part of a tick beside it would
-  // take as long as thousands of updates.
+  // A stop in mid path, which a window that is too short causes, is also at a whole tick: the fraction of a tick next
+  // to it would take as long as thousands of updates.
   const double tick = 1 / (per_speed * clock_hz);
   const bool rests = part.stop || (part.to > phase.length - tick && end_speed(phase) < kRest);
   const bool rested = phase.speed == 0 && part.turns && from < tick;

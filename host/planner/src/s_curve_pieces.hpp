@@ -1,4 +1,4 @@
-// Feed pieces of speeds whose acceleration has no jumps. Internal to the planner.
+// The motion of feed pieces in S-curve plans, whose acceleration has no jumps. Internal to the planner.
 #pragma once
 
 #include "piece_shaper.hpp"
@@ -14,7 +14,7 @@ class SCurvePieces final : public PieceShaper {
   bool drops(const Pending& pending) const override;
   void advance(const Phase& /*phase*/, const PhasePart& /*part*/, double /*late*/) override {}
   FeedMotion motion(const Phase& phase, const PhasePart& part, double lead, double ahead) const override;
-  // Of smooth motion the rate is that behind the lead.
+  // In smooth motion this is the rate after the lead.
   double pending_rate(const Phase& /*phase*/, const PhasePart& /*part*/, const FeedMotion& motion) const override {
     return motion.rate;
   }

@@ -16,8 +16,8 @@ namespace {
 constexpr int kNoCap = -1;
 static_assert(SCurvePlan::kMaxRamps == 10 + 3 * (2 + 2 * (kMaxTries + 4)));
 
-// A stretch between two places without acceleration. Ramps that start there and the caps of the tree below `cap` are
-// all that limits the speed between, and `most`. None of the caps is below `to`.
+// A stretch between two places without acceleration. In it, the speed is limited only by the ramps from its ends, by
+// the caps of the tree below `cap`, and by `most`. None of these caps is below `to`.
 struct Gap {
   double begin = 0;
   double end = 0;
@@ -27,9 +27,9 @@ struct Gap {
   int cap = kNoCap;
 };
 
-// How far rounding may put the length of a ramp off. Speeds are off by some 2^-48 of them, and a ramp between speeds dv
-// apart is at least as long as the square root of dv, so that its length changes by up to 1 / (2 dv) of it for each
-// mm/s. From Rise::kSameSpeed on that is at most 2^-19 of the length.
+// How much rounding may change the length of a ramp. Speeds have a relative error of some 2^-48. The length of a short
+// ramp is proportional to the square root of the difference dv of its speeds, so it changes by up to 1 / (2 dv) of
+// itself per mm/s. From Rise::kSameSpeed on that is at most 2^-19 of the length.
 double uncertainty(double length, double low, double high) {
   return length > 0 ? length * (high / (high - low)) * 0x1p-49 : 0;
 }
@@ -38,8 +38,8 @@ bool is_level(const Phase& phase) { return phase.acceleration == 0 && phase.jerk
 
 }  // namespace
 
-// The lowest cap first: where ramps from the gap's ends reach it, it splits the gap in two; where they do not, the gap
-// is a ramp up and one down. So a ramp never meets a cap that is still to come, and what has been planned stays.
+// Plans the lowest cap first. If ramps from both ends of a gap reach the cap, it splits the gap in two; else the gap is
+// one ramp up and one ramp down. So a ramp never meets a cap that is not planned yet, and planned parts never change.
 class SCurvePlan::Impl {
  public:
   Impl(std::size_t window, std::function<void()> meanwhile, PlanWork& work)
@@ -86,19 +86,19 @@ class SCurvePlan::Impl {
   SpeedWindow window_;
   SpeedCaps caps_;
   Rise rise_;
-  std::vector<Phase> fall_;     // of one gap
+  std::vector<Phase> fall_;     // falling phases of one gap
   std::vector<Gap> gaps_;       // still to plan, the next one last
-  std::vector<Phase> planned_;  // what plan() makes
-  std::vector<Phase> tail_;     // the last plan from the window's beginning on, from tail_begin_
+  std::vector<Phase> planned_;  // the result of plan()
+  std::vector<Phase> tail_;     // rest of the last plan, from the window's beginning on; begins at tail_begin_
   std::size_t tail_begin_ = 0;
   double tail_length_ = 0;
-  std::vector<Phase> given_;  // what no later span changes, from given_begin_
+  std::vector<Phase> given_;  // phases that no later span changes; not yet taken from given_begin_ on
   std::size_t given_begin_ = 0;
   double speed_ = 0;         // at the window's beginning
-  double acceleration_ = 0;  // there; not above 0
+  double acceleration_ = 0;  // the same place; not above 0
   bool finishing_ = false;
-  bool lead_short_sight_ = false;  // of what was given last
-  bool short_sight_ = false;       // of the phases that are put
+  bool lead_short_sight_ = false;  // of the last phase given
+  bool short_sight_ = false;       // for the phases that put() adds
 };
 
 bool SCurvePlan::Impl::next(Phase& phase) {
@@ -112,8 +112,8 @@ bool SCurvePlan::Impl::next(Phase& phase) {
   return true;
 }
 
-// When the motion at the window's beginning does not fit the new plan, what was planned before still holds; but the
-// next plan may fit, and so the least is given of it. At rest every plan fits.
+// If the motion at the window's beginning does not fit the new plan, the plan before still holds. Only the least is
+// given of it, because the next plan may fit. At rest every plan fits.
 void SCurvePlan::Impl::give() {
   given_.clear();
   given_begin_ = 0;
@@ -140,8 +140,9 @@ void SCurvePlan::Impl::give() {
   caps_.drop(window_.drop_before(position));
 }
 
-// How many phases of the tail end without acceleration up to `position`, better where the speed rises next: a later
-// plan may want to fall earlier. Not less than a quarter for that.
+// Number of phases of the tail to give: up to `position`, so that the last one ends without acceleration. An end before
+// a rise of the speed is better, because a later plan may need to fall earlier, but it must not be before a quarter of
+// `position`.
 std::size_t SCurvePlan::Impl::phases_until(double position) const {
   std::size_t last = 0;
   std::size_t rises = 0;
@@ -156,8 +157,8 @@ std::size_t SCurvePlan::Impl::phases_until(double position) const {
   return rises != 0 && tail_[tail_begin_ + last].jerk < 0 ? rises : last;
 }
 
-// Up to about `position`, to where there is no acceleration. Of a fall that goes on there `least` is given: the next
-// plan may not want it.
+// Gives phases up to about `position`, to a place without acceleration. If the speed is falling there, gives `least`
+// only, because the next plan may not need the fall.
 double SCurvePlan::Impl::give_until(double position, double least) {
   double at = give_phases(phases_until(position));
   if (tail_begin_ == tail_.size()) return at;
@@ -183,7 +184,8 @@ double SCurvePlan::Impl::give_phases(std::size_t count) {
   return length;
 }
 
-// Gives so much of the next phase, whose speed does not rise, if it is longer. Returns what is given.
+// Gives the first `length` of the next phase, whose speed must not rise, if the phase is longer. Returns the length
+// given.
 double SCurvePlan::Impl::split(double length) {
   if (tail_begin_ == tail_.size() || !(length > rounding())) return 0;
   Phase& next = tail_[tail_begin_];
@@ -218,7 +220,7 @@ bool SCurvePlan::Impl::plan() {
   return true;
 }
 
-// Goes on from a fall to no acceleration, with each span's jerk.
+// Continues from a falling speed to acceleration 0, with the jerk of each span.
 bool SCurvePlan::Impl::lead(Gap& gap) {
   double fall = -acceleration_;
   short_sight_ = lead_short_sight_;
@@ -248,7 +250,8 @@ bool SCurvePlan::Impl::lead(Gap& gap) {
   return true;
 }
 
-// Whether no motion gets from `low` at one end to `high` within begin .. end. The highest limits of all decide most.
+// Whether begin .. end is too short to get from `low` at one end to `high`. The highest limits of the whole window
+// decide most cases.
 bool SCurvePlan::Impl::passes(double begin, double end, double low, double high) const {
   const double length = end - begin;
   return reach_length(low, high, window_.most()) >= length ||
@@ -260,13 +263,13 @@ void SCurvePlan::Impl::begin_ramp() {
   ++work_.ramps;
 }
 
-// Length of a ramp from the gap's beginning on, as planned in rise_.
+// Length of a ramp from the gap's beginning to the speed `to`; the ramp is in rise_.
 double SCurvePlan::Impl::rising(const Gap& gap, double to) {
   begin_ramp();
   return rise_.plan(window_.from(gap.begin, gap.end), gap.from, to);
 }
 
-// The same to its end.
+// The same for a ramp from the speed `from` to the gap's end.
 double SCurvePlan::Impl::falling(const Gap& gap, double from) {
   begin_ramp();
   return rise_.plan(window_.back_from(gap.end, gap.begin), gap.to, from);
@@ -293,7 +296,8 @@ bool SCurvePlan::Impl::divide(Gap gap) {
     gap.cap = kNoCap;
     return hop(gap);
   }
-  // At the cap from `first` to `last`; what comes before and after may be above it where the cap is reached in time.
+  // The speed is at the cap from `first` to `last`. On either side, it may be above the cap if the cap is reached in
+  // time.
   const bool early = risen < cap.begin;
   const bool late = falls > cap.end;
   const double first = early ? std::min(cap.begin, falls) : risen;
@@ -304,7 +308,7 @@ bool SCurvePlan::Impl::divide(Gap gap) {
   return true;
 }
 
-// The window begins above the cap.
+// The gap begins above the cap.
 bool SCurvePlan::Impl::divide_below(Gap gap) {
   const Cap& cap = caps_[gap.cap];
   const double falls = gap.end - falling(gap, cap.speed);
@@ -329,7 +333,7 @@ bool SCurvePlan::Impl::hop(const Gap& gap) {
   rise_.falling(fall_);
   const double up = rising(gap, speed);
   const double steady = gap.end - gap.begin - up - down;
-  // Ends whose ramps fit were found by the same ramps over a longer way: what is too little is rounding.
+  // The same ramps found the ends of this gap, over a longer way, and fitted there. A shortage is due to rounding.
   const double slack = rounding() + uncertainty(up, gap.from, speed) + uncertainty(down, gap.to, speed);
   if (steady < -slack) return false;
   const std::size_t before = planned_.size();
@@ -348,7 +352,7 @@ void SCurvePlan::Impl::take_up(double length, std::size_t first) {
   longest->length += length;
 }
 
-// The highest speed in the gap: that of one of its ends where going up and down again is not worth it.
+// The highest speed in the gap. It is that of the faster end if going up and down again is not worth it.
 double SCurvePlan::Impl::peak(const Gap& gap) {
   constexpr double kWorth = 1 + 0x1p-8;
   const double least = std::max(gap.from, gap.to);
@@ -361,7 +365,8 @@ double SCurvePlan::Impl::peak(const Gap& gap) {
     };
   };
   if (excess_of(window_.most())(worth) > 0) return least;
-  // Limits that are the same all along give a peak that is simple; others one between those of the least and the most.
+  // Limits that are the same all along give the peak directly. Others give a peak between those of the lowest and the
+  // highest limits.
   const SpeedWindow::Range range = window_.range(gap.begin, gap.end);
   const auto simple = [&](RampLimits limits) {
     const auto excess = excess_of(limits);
@@ -374,7 +379,7 @@ double SCurvePlan::Impl::peak(const Gap& gap) {
   if (range.uniform()) return speed >= worth && excess(speed) <= rounding() ? speed : least;
   if (!(excess(worth) < 0)) return least;
   const double high = std::max(worth, simple(range.most));
-  constexpr double kShare = 0x1p-20;  // what is left is gone at the peak
+  constexpr double kShare = 0x1p-20;  // the rest of the length passes at the peak
   return highest(speed > worth && excess(speed) < 0 ? speed : worth, high, excess, kShare);
 }
 

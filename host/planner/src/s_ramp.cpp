@@ -6,7 +6,7 @@
 namespace trammel::planner {
 namespace {
 
-// Nothing is multiplied by the jerk, so that an infinite one gives what has no limit.
+// Dividing by the jerk, instead of multiplying by it, gives the right limit for an infinite jerk.
 double rise_time(RampLimits limits) { return limits.acceleration / limits.jerk; }
 
 double ramp_time(double change, RampLimits limits) {
@@ -34,12 +34,12 @@ double reach_length(double low, double high, RampLimits limits) {
 
 double ramp_end(double low, double length, RampLimits limits) {
   const double rise = rise_time(limits);
-  const double least = limits.acceleration * rise;  // gained where the whole acceleration is reached
+  const double least = limits.acceleration * rise;  // gained by a ramp that just reaches the full acceleration
   if (ramp_length(low, low + least, limits) <= length) {
     const double square = least * least + 4 * (low * low - least * low + 2 * limits.acceleration * length);
     return std::max(low, (std::sqrt(square) - least) / 2);
   }
-  // Half the ramp's time: (2 low + jerk t^2) t = length, from above.
+  // Newton's method from above for half the ramp's time: (2 low + jerk t^2) t = length.
   double time = rise;
   for (int i = 0; i < 100; ++i) {
     const double square = limits.jerk * time * time;
@@ -50,7 +50,7 @@ double ramp_end(double low, double length, RampLimits limits) {
   return low + limits.jerk * time * time;
 }
 
-// Newton's method from above: the speed only rises.
+// Newton's method converges from above, because the speed only rises.
 double rising_time(double length, double speed, double acceleration, double jerk, double most) {
   double time = length < most * speed ? length / speed : most;
   for (int i = 0; i < 100; ++i) {

@@ -1,6 +1,6 @@
-// The acceleration along a span, by its speed. An arc leaves at each speed what Curve::along() says; that is cut into
-// steps of constant acceleration and jerk, each what its highest speed leaves. Squares of speeds. Internal to the
-// planner.
+// The acceleration along a span as a function of speed. On an arc, Curve::along() gives the acceleration that each
+// speed leaves. It is divided into steps of constant acceleration and jerk, each with the values at its highest speed.
+// Speeds are given as squares. Internal to the planner.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,14 @@ class SpanAcceleration {
     if (span.curve.whole <= 0) return;
     curve_ = span.curve;
     at_rest_ = std::max(at_top_, span.curve.at_rest);
-    // As many as make each some 4 % less than the one before, where the speed is the most that the curve allows.
+    // So many that each step has some 4 % less than the one before, if the speed is the most that the curve allows.
     constexpr double kSteps = 28;
     const double lost = 1 - at_top_ / at_rest_;
     steps_ = std::clamp(static_cast<int>(std::ceil(kSteps * lost)), 1, kMaxSteps);
   }
 
   int steps() const { return steps_; }
-  // Up to this square. Narrower where the acceleration falls faster.
+  // Highest square of the step. Steps are narrower where the acceleration falls faster.
   double top(int step) const {
     if (step + 1 >= steps_) return curve_.whole > 0 ? top_ : std::numeric_limits<double>::infinity();
     const double below = 1 - static_cast<double>(step + 1) / steps_;
@@ -39,7 +39,7 @@ class SpanAcceleration {
     return std::clamp(curve_.along(std::sqrt(top(step))), at_top_, at_rest_);
   }
 
-  // With that acceleration.
+  // The jerk of the step, with that acceleration.
   double jerk(int step) const {
     if (curve_.whole <= 0) return jerk_;
     return std::max(jerk_, curve_.jerk_along(std::sqrt(step + 1 < steps_ ? top(step) : top_), acceleration(step)));
@@ -60,7 +60,7 @@ class SpanAcceleration {
     each(low, high, [&](double, double, double, double part) { sum += part; });
     return sum;
   }
-  // The square that is reached in `length` from `low` on by `ramps` ramps at once (2: up, and down again).
+  // The square reached from `low` in `length`, if `ramps` ramps share the length (2: up, and down again).
   double reached(double low, double length, int ramps = 1) const {
     for (int i = first(low); i < steps_; ++i) {
       const double end = top(i);
@@ -74,8 +74,8 @@ class SpanAcceleration {
   }
 
  private:
-  // The step for a ramp from there on. Less than a quarter of a step would be too few ticks for its acceleration to
-  // come out in whole ones: that is gone with the next step's, which is less.
+  // The step for a ramp that begins at `low`. In less than a quarter of a step there are too few ticks for the step's
+  // acceleration. The ramp then begins with the next step, whose acceleration is less.
   int first(double low) const {
     if (steps_ == 1) return 0;
     int step = 0;
@@ -90,7 +90,7 @@ class SpanAcceleration {
   double at_rest_ = 0;
   double at_top_ = 0;
   double top_ = 0;
-  double jerk_ = 0;  // the least
+  double jerk_ = 0;  // the lowest at any speed
   Curve curve_;
   int steps_ = 1;
 };

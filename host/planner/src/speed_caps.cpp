@@ -28,7 +28,7 @@ void LevelledSpeeds::push(double speed, bool brief) {
   }
 }
 
-// The last one is not of the equal ones.
+// Ends the run of equal speeds. The last speed pushed does not belong to it.
 void LevelledSpeeds::close() {
   const std::size_t end = levelled_.size() - 1;
   for (std::size_t i = end - std::min(open_, end); i < end; ++i) {

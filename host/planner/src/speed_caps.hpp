@@ -1,5 +1,5 @@
-// The most speed at each place of a window, as a tree: above each cap stands the next lower one on either side.
-// Internal to the planner.
+// The speed limits (caps) along a window, as a binary tree. The root is the lowest cap; on each side of a cap, its
+// subtree holds the caps up to the next lower one. Internal to the planner.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +13,25 @@ namespace trammel::planner {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Cap {
-  double begin = 0;  // = end: a corner
+  double begin = 0;  // equal to `end`: a corner
   double end = 0;
   double speed = 0;
-  int before = -1;  // the lowest of those before it, back to the last lower one; -1: none
+  // Roots of the subtrees: the lowest cap before this one, back to the last lower cap, and the same after it; -1: none.
+  int before = -1;
   int after = -1;
 };
 
-// A row of speeds, with those made equal that are but for noise, where they last no longer than a ramp's bends: else
-// each would have ramps of its own. Each is lowered by at most one part in 2048, and what comes later changes only the
-// last equal ones.
+// A sequence of speeds. Neighbours that differ only by noise and last no longer than the bends of a ramp become equal,
+// because each would otherwise have its own ramps. A speed is lowered by at most one part in 2048. Later speeds change
+// only the last run of equal speeds.
 class LevelledSpeeds {
  public:
   explicit LevelledSpeeds(std::size_t most);
 
-  // Infinite: none.
+  // An infinite speed is no limit. `brief`: it lasts no longer than the bends of a ramp.
   void push(double speed, bool brief);
   void drop(std::size_t count);
-  // Not below `start` where the speed pushed was not.
+  // Levelling does not lower a speed from above `start` to below it.
   double at(std::size_t i, double start) const;
 
  private:
@@ -38,7 +39,7 @@ class LevelledSpeeds {
 
   std::vector<double> wanted_;
   std::vector<double> levelled_;
-  std::size_t open_ = 0;  // equal ones at the end, between low_ and high_
+  std::size_t open_ = 0;  // number of equal speeds at the end, made of speeds from low_ to high_
   double low_ = 0;
   double high_ = 0;
 };
@@ -47,10 +48,10 @@ class SpeedCaps {
  public:
   explicit SpeedCaps(std::size_t spans);
 
-  // As the window's spans.
+  // Call in step with the spans of the window.
   void push(const Span& span);
   void drop(std::size_t count);
-  // Caps of the window, which begins at the speed `start`. Returns the lowest.
+  // Builds the caps of the window, which begins at the speed `start`. Returns the root.
   int build(const SpeedWindow& window, double start);
   const Cap& operator[](int i) const { return caps_[static_cast<std::size_t>(i)]; }
 
@@ -59,7 +60,7 @@ class SpeedCaps {
   int link();
 
   LevelledSpeeds spans_;
-  LevelledSpeeds corners_;  // before each span
+  LevelledSpeeds corners_;  // at the beginning of each span
   Span last_;
   std::vector<Cap> caps_;
   std::vector<int> open_;

@@ -28,7 +28,7 @@ Range joined(const Range& a, const Range& b) {
   return {lower(a.least, b.least), most};
 }
 
-// As one stretch, it costs a ramp little of the time that its acceleration takes to rise.
+// Whether a ramp over the range as one stretch loses little, against the time in which its acceleration rises.
 bool alike(const Range& range, double tolerance) {
   constexpr double kMax = 1.05;
   return range.most.acceleration <= (1 + tolerance) * range.least.acceleration &&
@@ -49,7 +49,7 @@ SpeedWindow::SpeedWindow(std::size_t spans) : most_(spans) {
 }
 
 std::size_t SpeedWindow::drop_before(double position) {
-  // What rounding leaves of a span is not a span.
+  // A remainder of rounding is not a span.
   const double nearly = position + length() * 0x1p-40;
   const auto border = std::upper_bound(positions_.begin() + 1, positions_.end(), nearly);
   const auto passed = border - positions_.begin() - 1;
@@ -73,7 +73,7 @@ void SpeedWindow::index() {
 
 SpeedWindow::Walk::Walk(const SpeedWindow& window, double from, bool forwards, double to)
     : window_(&window), from_(from), forwards_(forwards) {
-  if (window.uniform()) {  // nothing to look for
+  if (window.uniform()) {  // all spans are one stretch
     last_ = forwards ? window.size() : 0;
     at_ = window.size() - last_;
     return;
@@ -100,10 +100,10 @@ bool SpeedWindow::Walk::take_block(Range& range) {
 }
 
 SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
-  constexpr double kBrief = 1.0 / 8;   // of the acceleration's rise
-  constexpr double kShare = 1.0 / 8;   // of it that a whole ramp may lose
-  constexpr double kTolerance = 0.05;  // at most
-  constexpr double kMin = 0x1p-12;     // at least
+  constexpr double kBrief = 1.0 / 8;   // of the time in which the acceleration rises
+  constexpr double kShare = 1.0 / 8;   // of that time, the loss over a whole ramp
+  constexpr double kTolerance = 0.05;  // largest tolerance
+  constexpr double kMin = 0x1p-12;     // smallest tolerance
   if (window_->uniform()) {
     at_ = last_;
     Stretch all;
@@ -137,7 +137,8 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
   Stretch stretch;
   stretch.end = end_;
   stretch.limits = range.least;
-  // What is too short for a piece of its own is made with what follows or comes before.
+  // A stretch too short for a piece of its own becomes part of a neighbour's piece, so the neighbour's jerk limits it
+  // too.
   const auto beside = [&stretch](double jerk) {
     if (2.5 * jerk < stretch.limits.jerk) return;
     stretch.limits.jerk = std::min(stretch.limits.jerk, jerk);

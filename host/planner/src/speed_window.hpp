@@ -1,4 +1,4 @@
-// The spans that a plan looks at. Positions are lengths from the window's beginning. Internal to the planner.
+// The spans that a plan considers. Positions are lengths from the window's beginning. Internal to the planner.
 #pragma once
 
 #include <cstddef>
@@ -20,19 +20,19 @@ class SpeedWindow {
   const Span& operator[](std::size_t i) const { return spans_[i]; }
 
   void push(const Span& span) { spans_.push_back(span); }
-  // The window begins at `position` from now on; returns how many spans are no longer in it. index() comes before the
-  // next question.
+  // Moves the beginning of the window to `position`; returns how many spans leave it. Call index() before the next
+  // query.
   std::size_t drop_before(double position);
   void index();
 
-  // Where span i begins; size(): the end.
+  // Beginning of span i; size(): the window's end.
   double position(std::size_t i) const { return positions_[i]; }
   double length() const { return positions_.back(); }
   bool uniform() const { return all_.uniform(); }
-  // No span has less, or more.
+  // The lowest and the highest limits of all spans.
   RampLimits least() const { return all_.least; }
   RampLimits most() const { return all_.most; }
-  // The least and the most of both within begin .. end.
+  // The lowest and the highest limits within begin .. end.
   struct Range {
     RampLimits least;
     RampLimits most;
@@ -40,24 +40,25 @@ class SpeedWindow {
   };
   Range range(double begin, double end) const;
 
-  // Spans as one stretch of the way that a ramp takes; their least limits.
+  // Successive spans that a ramp crosses as one, with the lowest of their limits.
   struct Stretch {
-    double end = 0;  // from where the walk began
+    double end = 0;  // from the beginning of the walk
     RampLimits limits;
-    const Span* arc = nullptr;  // one span alone, which has more of them below its highest speed
-    double top = std::numeric_limits<double>::infinity();  // of an arc's step: up to this speed
-    // The least of the neighbouring spans', if they have not much less: none in the stretch has more.
+    const Span* arc = nullptr;  // set if the stretch is one arc, whose limits are higher at lower speeds
+    double top = std::numeric_limits<double>::infinity();  // highest speed of a step of an arc
+    // No jerk in the stretch is above this: the lowest of the neighbouring spans, unless that is much lower.
     double jerk_beside = std::numeric_limits<double>::infinity();
   };
 
-  // Away from a place, stretch by stretch, up to the span in which the other one lies.
+  // Walks stretch by stretch from one place to the span that contains another place.
   class Walk {
    public:
     Walk(const SpeedWindow& window, double from, bool forwards, double to);
 
     bool ended() const { return at_ == last_; }
-    // The next stretch, for a ramp that has `speed` there, `time` after its beginning. Spans make one where their
-    // limits differ so little, or for so short a time, that it costs little of what a rise of the acceleration does.
+    // The next stretch, for a ramp that reaches it with `speed`, `time` after the ramp's beginning. Spans become one
+    // stretch if their limits differ so little, or for so short a time, that the loss is small against the time in
+    // which the acceleration rises.
     Stretch next(double speed, double time);
 
    private:
@@ -70,7 +71,7 @@ class SpeedWindow {
     const SpeedWindow* window_;
     double from_;
     bool forwards_;
-    std::size_t at_;  // border
+    std::size_t at_;  // a border between spans
     std::size_t last_;
     double end_ = 0;
   };
@@ -83,7 +84,7 @@ class SpeedWindow {
   std::size_t most_;
   std::vector<Span> spans_;
   std::vector<double> positions_;
-  std::vector<Range> blocks_;  // of kBlock spans
+  std::vector<Range> blocks_;  // range of kBlock spans each
   Range all_;
 };
 

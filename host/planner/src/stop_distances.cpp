@@ -9,21 +9,21 @@
 namespace trammel::planner {
 namespace {
 
-// A card that holds for want of paths goes on with twice the stop distance and a reserve.
+// A card in an under-run hold resumes when twice the stop distance and a reserve are queued.
 constexpr double kResumeFactor = 2;
 constexpr double kReserve = card_map::constant::kUnderrunReserveTicks;
 
 std::uint64_t end_of(const FeedPiece& piece) { return piece.begin + piece.command.ticks; }
-// Of what a hold takes in it: the clocks and the rate that would count as much without its shift.
+// Clocks and rate of a piece without slew shift that affects a hold as this piece does.
 double slewing_clocks(const FeedPiece& piece) { return piece.clocks * (1 << piece.command.slew_shift); }
 double slewing_rate(const FeedPiece& piece) { return piece.highest_rate / (1 << piece.command.slew_shift); }
 std::uint32_t ticks32(double ticks) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(ticks), 1.0, 4294967295.0));
 }
 
-// While a piece that begins in the block is in force, all up to the stop is queued: the pieces come before the only
-// path. What follows may come in part; a stop distance beyond the stop would make the card hold until the rest is
-// there.
+// Whether everything up to the stop is queued while a piece that begins in this block is in force. It is if the block
+// has one path and ends in a stop: its pieces come before the path. The commands after the stop may come in part. A
+// stop distance that reaches beyond the stop would make the card hold until the rest of them has come.
 bool ends_queued(const PathEntry& entry) {
   const Geometry geometry = entry.block.geometry;
   return entry.stop && (geometry == Geometry::kLine || geometry == Geometry::kArc ||
@@ -91,15 +91,15 @@ void StopDistances::see_next() {
   ++seen_;
 }
 
-// All is known that half-full queues hold while the first piece is in force.
+// Whether all commands are known that half-full queues hold while the first piece is in force.
 bool StopDistances::knows_queues() const {
   if (at(completed_).stop || paths_.ended() || last_ - completed_ > pieces_held_) return true;
   if (last_ - completed_ < 2) return false;
   return paths_.covers(at(completed_ + 1).block, at(last_ - 1).block);
 }
 
-// The tick up to which half-full queues hold what the first piece needs when it begins. A block's pieces come before
-// its paths: where a piece does not fit, the paths end with the block before.
+// The tick up to which the pieces in a half-full feed queue reach when the first piece begins. A block's pieces come
+// before its paths, so if a piece does not fit, the paths end with the block before.
 double StopDistances::held_by_pieces() const {
   const std::uint64_t behind = completed_ + pieces_held_;
   if (behind < last_) return static_cast<double>(path_[at(behind).block].begin_ticks);
@@ -111,7 +111,7 @@ double StopDistances::held_from(const FeedPiece& first) {
   return std::min(held_by_pieces(), paths_.held(first.block, first.begin));
 }
 
-// The fewest ticks in half-full queues behind any tick of the first piece.
+// The least number of ticks in half-full queues after any tick of the first piece.
 double StopDistances::least_held(const FeedPiece& first) {
   const std::uint64_t end = end_of(first);
   double least = held_by_pieces() - static_cast<double>(end);
@@ -122,32 +122,32 @@ double StopDistances::least_held(const FeedPiece& first) {
   return least;
 }
 
-// Of the first piece: what a stop from any of its ticks takes.
+// Ticks that a stop takes from any tick of the first piece.
 double StopDistances::needed(const FeedPiece& first) const {
   const double needed = std::ceil(stop_clocks_ * slewing_rate(at(highest_[slot(highest_first_)])));
-  // A stop that begins in the piece goes on at its rates, and to the program's own stop at most.
+  // A stop that begins in the piece continues at the piece's rates, and to the program's own stop at most.
   const FeedPiece& last = at(seen_ - 1);
   if (!last.stop) return needed;
   return std::min(needed,
                   std::ceil(stop_clocks_ * slewing_rate(first)) + static_cast<double>(end_of(last) - end_of(first)));
 }
 
-// The end of the first piece's run, where it is known.
+// The end of the first piece's run, if it is known.
 double StopDistances::find_stop() {
   stop_ = std::max(stop_, completed_);
   while (stop_ + 1 < last_ && !at(stop_).stop) ++stop_;
   return at(stop_).stop ? static_cast<double>(end_of(at(stop_))) : QueuedPaths::kUnlimited;
 }
 
-// Of the first piece.
+// The stop distance of the first piece.
 double StopDistances::distance(const FeedPiece& first) {
   const double held = held_from(first);
   const double stop = find_stop();
-  // All that a run still needs is queued in time: nothing is to be waited for before its end.
+  // All commands of the rest of the run are queued in time, so no wait is needed before its end.
   const double to_stop = stop - static_cast<double>(end_of(first)) - kReserve - 1;
   double most = least_held(first) / kResumeFactor - kReserve;
   if (stop <= held) most = std::max(most, to_stop);
-  // While the host fills the queues for the first time a run may begin with no more than its own commands queued.
+  // While the host fills the queues for the first time, a run may begin with only its own commands queued.
   if (stop <= filled_) most = std::min(most, to_stop);
   return std::min(needed(first), most);
 }
@@ -155,8 +155,8 @@ double StopDistances::distance(const FeedPiece& first) {
 void StopDistances::complete_first() {
   FeedPiece& first = at(completed_);
   if (completed_ == 0) filled_ = held_from(first);
-  // A path that is a run by itself has no rule: with any, the card would hold when the next block's pieces have come,
-  // and not yet their path. Where a rule is in force 0 would leave it so.
+  // A path that is a run by itself gets no stop distance. With one, the card would hold when the next block's pieces
+  // have come and their path has not. If a stop distance is in force, 1 replaces it; 0 would leave it in force.
   if (!first.stop) {
     const bool queued = ends_queued(path_[first.block]);
     first.command.stop_distance = !queued ? ticks32(distance(first)) : ruled_ ? 1 : 0;

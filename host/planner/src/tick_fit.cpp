@@ -27,8 +27,8 @@ void TickFit::change_density(double ticks_per_clock_at_1_mm_s, double ahead) {
   lag_ += ahead;
 }
 
-// A ramp gets at least the ticks that it takes. Constant speed leaves those that a stop may come too early; a peak
-// shares out what both its ramps lack.
+// A ramp gets at least the ticks that it takes. A phase of constant speed leaves the ramp after it the ticks by which a
+// stop may come too early. A peak divides the ticks that its two ramps lack between them.
 double TickFit::end_tick(const Phase& phase, double exact) const {
   constexpr double kAlmost = 1e-9;
   const auto above = [](double tick) { return std::ceil(tick - kAlmost); };
@@ -38,14 +38,14 @@ double TickFit::end_tick(const Phase& phase, double exact) const {
     return std::floor(exact + (phase.acceleration * lag_ + phase.next * kMaxRounded) / both);
   }
   const double late = exact + lag_;
-  // The part of a tick at the border has the smaller acceleration of the two.
+  // The tick that contains the border has the smaller of the two accelerations.
   const bool weaker = std::abs(phase.acceleration) <= std::abs(phase.next);
   return goes_on(phase) && !weaker ? std::floor(late + kAlmost) : above(late);
 }
 
 void TickFit::advance(const Phase& phase, double to, double ticks, double late, bool through) {
-  constexpr double kSame = 1e-9;  // of a rate
-  constexpr double kFar = 2;      // ticks: blocks that have more of them than their length
+  constexpr double kSame = 1e-9;  // relative difference of rates that count as equal
+  constexpr double kFar = 2;      // ticks: bounds the fit where blocks have more ticks than their length
   begin_ = end_;
   const double tick = 1 / (ticks_per_clock_at_1_mm_s_ * clock_hz_);
   const auto planned = [&](double place) {
@@ -63,7 +63,7 @@ void TickFit::advance(const Phase& phase, double to, double ticks, double late, 
     end_ = std::clamp(std::sqrt(std::max(0.0, square)), std::min(one, other), std::max(one, other));
   }
   if (ticks != 0) ahead_ = 0;
-  // From here on the plan goes as the next phase does.
+  // At a peak the plan continues with the acceleration of the next phase.
   const double acceleration = is_peak(phase) && !through ? phase.next : phase.acceleration;
   const double gain = acceleration == 0 ? 0 : (end_ * end_ - wanted * wanted) / (2 * of_ticks(acceleration));
   lag_ = std::clamp(late - gain, -kFar, kFar) + ahead_;

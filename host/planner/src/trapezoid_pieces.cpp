@@ -10,8 +10,8 @@ namespace {
 
 bool same_acceleration(double a, double b) { return std::abs(a - b) <= 0.01 * std::abs(b); }
 
-// Of constant acceleration; `lead` ticks are gone when it begins, and with them the change of rate of those that are
-// not `ahead`.
+// A motion of constant acceleration that begins after `lead` ticks. By then the rate has changed as in the lead ticks
+// that are not `ahead`.
 FeedMotion steady_behind(double lead, double ahead, const Rates& rates, double ticks) {
   ahead = std::min(ahead, lead);
   const double begin = std::sqrt(rates.begin * rates.begin + (rates.end - rates.begin) * (rates.end + rates.begin) *

@@ -1,4 +1,4 @@
-// Feed pieces of speeds whose acceleration may jump. Internal to the planner.
+// The motion of feed pieces in trapezoid plans, whose acceleration may jump. Internal to the planner.
 #pragma once
 
 #include "piece_shaper.hpp"

@@ -7,9 +7,10 @@
 namespace trammel::planner {
 namespace {
 
-constexpr std::size_t kChunks = 16;   // of a window
-constexpr double kNoLength = 1e-9;    // share of a span that rounding may leave over
-constexpr double kSameMotion = 1e-6;  // relative: accelerations, or constant speeds, that make one phase
+constexpr std::size_t kChunks = 16;  // per window
+constexpr double kNoLength = 1e-9;   // share of a span; less is a remainder of rounding
+// Accelerations, or constant speeds, up to this relative difference make one phase.
+constexpr double kSameMotion = 1e-6;
 
 bool same_motion(double a, double b) { return std::abs(a - b) <= kSameMotion * std::abs(b); }
 
@@ -32,7 +33,7 @@ void TrapezoidPlan::finish() {
   due_ = count_;
 }
 
-// From the last span to the first one whose entry stays what it was.
+// From the last span back to the first one whose entry does not change.
 void TrapezoidPlan::look_back() {
   ++work_.windows;
   work_.window_spans += count_;
@@ -79,14 +80,14 @@ void TrapezoidPlan::plan_first() {
   --count_;
   if (--due_ != 0) return;
   pending_.stop = finished_;
-  // What follows is not known yet: the same, more often than not.
+  // The next phase is not known yet. Most often its acceleration is the same.
   const double next = finished_ ? 0 : pending_.acceleration;
   if (finished_) speed_ = 0;
   finished_ = false;
   give_pending(next);
 }
 
-// Up from the present speed, on, and down to `end`.
+// A span: up from the present speed, constant speed, and down to `end`.
 void TrapezoidPlan::add_span(const Node& at, double end, bool in_sight) {
   const double most = std::max(speed_, end);
   const double least = std::min(speed_, end);
@@ -102,7 +103,7 @@ void TrapezoidPlan::add_span(const Node& at, double end, bool in_sight) {
   at.acceleration.each(speed_, top, part);
   const std::size_t rising = count_parts_;
   at.acceleration.each(end, top, [&](double from, double to, double a, double length) { part(to, from, -a, length); });
-  // What rounding leaves is no phase.
+  // A remainder of rounding is not a phase; it goes to the longest part.
   if (even < kNoLength * at.length && count_parts_ != 0) {
     const auto longest = std::max_element(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(count_parts_),
                                           [](const Part& a, const Part& b) { return a.length < b.length; });
@@ -113,7 +114,7 @@ void TrapezoidPlan::add_span(const Node& at, double end, bool in_sight) {
   for (std::size_t i = count_parts_; i-- > rising;) add(parts_[i], in_sight);
 }
 
-// A phase from one speed to the other, both squared; one with the phase before it where it goes on.
+// Adds a part between two squares of speeds as a phase, or extends the phase before if that continues in the part.
 void TrapezoidPlan::add(const Part& part, bool in_sight) {
   const double from = std::sqrt(part.from);
   const double duration = 2 * part.length / (from + std::sqrt(part.to));

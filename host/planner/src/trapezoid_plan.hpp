@@ -1,6 +1,6 @@
-// Speeds whose acceleration may jump: as fast as every span and corner allows with the acceleration of each span, seen
-// over `window` spans. Backward pass over v^2 when the window is full, forward pass for its first sixteenth, which then
-// leaves it. Internal to the planner.
+// The speed plan whose acceleration may jump: as fast as every span and corner allows with the acceleration of each
+// span, over a view of `window` spans. When the window is full, it makes a backward pass over v^2, and a forward pass
+// over the first sixteenth, which then leaves the window. Internal to the planner.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ class TrapezoidPlan final : public SpeedPlan {
     SpanAcceleration acceleration;
     double top;
     double exit;    // the most at its end
-    double entry;   // the most at its start, so that all after it can be kept; below 0: not known yet
-    bool in_sight;  // `entry` does not come from the window's end
+    double entry;   // the most at its start that keeps all later limits; below 0: not known yet
+    bool in_sight;  // `entry` does not depend on the window's end
   };
   Node& node(std::size_t i) { return nodes_[(first_ + i) % nodes_.size()]; }
   void look_back();
@@ -48,14 +48,15 @@ class TrapezoidPlan final : public SpeedPlan {
   std::size_t chunk_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;
-  std::size_t due_ = 0;  // spans whose phases are wanted before the next push
+  std::size_t due_ = 0;  // spans whose phases must be taken before the next push
   bool finished_ = false;
-  double speed_ = 0;                                           // squared, where the first span begins
-  Phase pending_;                                              // may go on in the next span
-  std::array<Part, 2 * SpanAcceleration::kMaxSteps> parts_{};  // of one span: the ramp up, and the one down backwards
+  double speed_ = 0;  // square, at the beginning of the first span
+  Phase pending_;     // may continue in the next span
+  // Of one span: the ramp up, then the ramp down in reverse order.
+  std::array<Part, 2 * SpanAcceleration::kMaxSteps> parts_{};
   std::size_t count_parts_ = 0;
   std::array<Phase, 2 * SpanAcceleration::kMaxSteps + 2> phases_;
-  std::size_t made_ = 0;  // of phases_
+  std::size_t made_ = 0;  // number of valid phases_
   std::size_t given_ = 0;
 };
 

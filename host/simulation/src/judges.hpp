@@ -1,4 +1,4 @@
-// What measures a run by its steps, beside their recorder. Not thread-safe.
+// The instruments that measure a run by its steps, other than the step recorder. Not thread-safe.
 #pragma once
 
 #include "trammel/run/feed_meter.hpp"
@@ -11,7 +11,7 @@
 namespace trammel::simulation {
 
 struct Judges {
-  // `recorder` and `output_list`, which may be null, must outlive them; `fork` gives all the steps.
+  // `recorder` and `output_list` must outlive them; `output_list` may be null. `fork` must get all steps.
   Judges(run::StepRecorder& recorder, run::TextSink* output_list, double clock_hz)
       : feed(clock_hz), outputs(output_list) {
     fork.add(recorder);
@@ -20,7 +20,7 @@ struct Judges {
     fork.add(feed);
     fork.add(outputs);
   }
-  // After the last step.
+  // Call after the last step.
   void tell(RunResult& result) {
     shapers.finish();
     outputs.finish();

@@ -13,7 +13,7 @@ namespace reg = card_map::reg;
 void OperatorTimeline::schedule(sim::TimedBus& bus, std::uint32_t clock_hz) {
   bus.at(0, [this](sim::Engine& engine) {
     engine.write(reg::kRatioFeed, driver::Card::ratio_of(operation_.percent, max_percent_));
-    // The first descriptor of each card is the time base's.
+    // The first descriptor of every card is that of the time base.
     const card_map::Descriptor time_base = card_map::descriptor_of(engine.read(reg::descriptor(0)), 0);
     if (!card_map::has_engine(driver::engines_of(time_base), card_map::engine::kClasses)) return;
     engine.write(reg::kRatioRapid, driver::Card::ratio_of(operation_.rapid_percent, max_percent_));

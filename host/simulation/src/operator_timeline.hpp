@@ -1,4 +1,4 @@
-// The operator's events on a simulated card, and what became of them. Not thread-safe.
+// Applies the operator's events to a simulated card and records when. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ class OperatorTimeline {
  public:
   OperatorTimeline(const Operation& operation, double max_percent) : operation_(operation), max_percent_(max_percent) {}
 
-  // Before the first access: the card has its overrides before anybody else writes to it. What is overridden are
-  // motions with a feed (all motions where the card has no classes of pieces), by another share rapids; fixed pieces
-  // run at 100 %. `bus` calls this object until it is gone.
+  // Call before the first access, so that the card has its overrides before anything else writes to it. Motions with a
+  // feed have one override, rapids another; fixed pieces run at 100 %. On a card without classes of pieces, the
+  // override of feeds holds for all motions. `bus` calls this object as long as the bus exists.
   void schedule(sim::TimedBus& bus, std::uint32_t clock_hz);
-  // Those whose time has come, in order.
+  // The events whose time has come, in order.
   const std::vector<MadeEvent>& made() const { return made_; }
 
  private:

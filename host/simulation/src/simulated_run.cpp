@@ -63,7 +63,7 @@ void tell(run::StepRecorder& recorder, RunResult& result) {
 
 }  // namespace
 
-// Each member listens to those above it or writes to them.
+// Each member listens or writes to members above it.
 struct SimulatedRun::Instruments {
   Instruments(const sim::SimulationOptions& engine_options, const RunOptions& options, const machine::Machine& machine)
       : kind(engine_options.kind),
@@ -136,7 +136,7 @@ RunResult SimulatedRun::stopped_result(std::uint64_t commands) {
     outcome.final_position.push_back(runner_.last_plan().start[joint] + outcome.counted[joint]);
   }
   RunResult result = gather(outcome);
-  // Means over what was sent, which is more than what was made.
+  // These means count all that was sent, which is more than what was executed.
   result.commanded_feed.reset();
   result.achieved_feed.reset();
   return result;

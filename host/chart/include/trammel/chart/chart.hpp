@@ -1,6 +1,7 @@
-// Charts as SVG: panels whose axes have round ticks, labels and units, with a legend above the data. Every picture that
-// the command makes is drawn here. The same input makes the same bytes. Thread-safe: no shared state; a Figure is used
-// by one thread at a time. No errors: what is not finite is left out, and a panel without data is an empty frame.
+// Charts as SVG: panels whose axes have round ticks, labels and units, with a legend above the data. All pictures of
+// the `trammel` command are drawn here. The same input gives the same bytes. Thread-safe: no shared state; a Figure
+// must be used by one thread at a time. No errors: points that are not finite are left out, and a panel without data is
+// an empty frame.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@ enum class Mark {
 };
 
 struct Series {
-  std::string label;  // in the legend; empty: not there
+  std::string label;  // in the legend; empty: no entry
   std::string colour;
   std::vector<Point> points;
   Mark mark = Mark::kLine;
@@ -32,10 +33,10 @@ struct Series {
 };
 
 struct Axis {
-  std::string label;  // what and in which unit: "speed, mm/s"
+  std::string label;  // quantity and unit, such as "speed, mm/s"
   bool logarithmic = false;
   bool numbers = true;  // false: neither ticks nor grid
-  // Range, where it is not that of the data.
+  // The range; without a value, that of the data.
   std::optional<double> low = std::nullopt;
   std::optional<double> high = std::nullopt;
 };
@@ -45,7 +46,7 @@ struct Panel {
   Axis x;
   Axis y;
   std::vector<Series> series;
-  bool equal_scale = false;  // a unit in x is as long as one in y; linear axes
+  bool equal_scale = false;  // one unit is as long in x as in y; for linear axes
   bool legend = true;
 };
 
@@ -75,14 +76,14 @@ class Figure {
 // Panels of one size in rows.
 std::string grid_of(const std::vector<Panel>& panels, std::size_t columns, double panel_width, double panel_height);
 
-// Ten colours that stay apart on white, the first eight for the colour-blind too; they begin again after the last.
+// Ten colours that differ clearly on white, the first eight also for the colour-blind. They repeat after the tenth.
 const char* colour(std::size_t index);
 
 // 1, 2 or 5 times a power of ten, from the first at or above `low` to the last at or below `high`, at most `most` of
 // them (most >= 2). Precondition: low < high, both finite.
 std::vector<double> round_ticks(double low, double high, std::size_t most);
 
-// As text of an XML document.
+// Escaped for the text of an XML document.
 std::string escaped(std::string_view text);
 
 }  // namespace trammel::chart

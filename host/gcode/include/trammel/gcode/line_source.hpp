@@ -12,31 +12,32 @@
 
 namespace trammel::gcode {
 
-// Bytes of a line without its end. Slicers write settings of some thousand bytes as one comment.
+// Bytes of a line without its end. Slicers write settings of several thousand bytes as one comment.
 inline constexpr std::size_t kLongestLine = 65535;
 
 class LineSource {
  public:
   virtual ~LineSource() = default;
-  // The next line without its end, until the next call; false after the last line and when the source fails. Of a line
-  // longer than kLongestLine it may give any part that is still longer: the reader refuses it.
+  // Gets the next line without its end; `line` is valid until the next call. Returns false after the last line and when
+  // the source fails. A line longer than kLongestLine may be cut, but not to kLongestLine or less: the reader refuses
+  // it.
   virtual bool next(std::string_view& line) = 0;
-  // For messages.
+  // The name of the source, for messages.
   virtual const std::string& name() const = 0;
-  // Why next() gave false, or nothing at the end of the program.
+  // The reason if next() returned false because of a failure; empty at the end of the program.
   virtual std::optional<std::string> failure() const { return std::nullopt; }
 };
 
-// Lines of bytes that come in pieces.
+// Lines of a source that gives its bytes in chunks.
 class ChunkedLines : public LineSource {
  public:
   bool next(std::string_view& line) final;
   const std::string& name() const final { return name_; }
 
  protected:
-  // `chunk`: bytes asked for at a time, at least 1.
+  // `chunk`: bytes per read(), at least 1.
   explicit ChunkedLines(std::string name, std::size_t chunk = 65536);
-  // Up to `most` bytes to `to`, 0 at the end and after a failure.
+  // Reads up to `most` bytes into `to`. Returns 0 at the end and after a failure.
   virtual std::size_t read(char* to, std::size_t most) = 0;
 
  private:
@@ -45,24 +46,24 @@ class ChunkedLines : public LineSource {
   std::string name_;
   std::size_t chunk_;
   std::unique_ptr<char[]> buffer_;
-  std::size_t begin_ = 0;      // of what was not given yet
-  std::size_t line_feed_ = 0;  // the first one behind begin_; end_ where there is none
+  std::size_t begin_ = 0;      // of the bytes that next() has not given
+  std::size_t line_feed_ = 0;  // position of the first LF after begin_; end_ if there is none
   std::size_t end_ = 0;
   bool after_return_ = false;  // a CR ended the last line: an LF that follows belongs to it
   bool at_end_ = false;
 };
 
-// A file, a device or a pipe. A file that cannot be opened shows as a failure.
+// A file, a device or a pipe. If the file cannot be opened, failure() gives the reason.
 class FileLines final : public ChunkedLines {
  public:
   explicit FileLines(const std::string& path);
-  // From where an open file stands; it is not closed.
+  // Reads on from the present position of an open file and does not close it.
   FileLines(int descriptor, std::string name);
   ~FileLines() override;
   FileLines(const FileLines&) = delete;
   FileLines& operator=(const FileLines&) = delete;
-  // Called before each read, and every 20 ms while a pipe or a device has nothing to read. next() passes on what it
-  // throws.
+  // `meanwhile` is called before each read, and every 20 ms while a pipe or a device has nothing to read. next() passes
+  // on its exceptions.
   void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
   std::optional<std::string> failure() const override { return failure_; }
 
@@ -76,7 +77,7 @@ class FileLines final : public ChunkedLines {
   std::optional<std::string> failure_;
 };
 
-// A text that outlives the source.
+// A text in memory, which must outlive the source.
 class TextLines final : public ChunkedLines {
  public:
   TextLines(std::string_view text, std::string name, std::size_t chunk = 65536);

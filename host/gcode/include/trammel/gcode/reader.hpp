@@ -1,16 +1,18 @@
-// G-code reader: lines become motions in machine coordinates, one at a time, in memory that does not grow with the
-// program. The meaning is LinuxCNC's (RS274/NGC). Where dialects differ:
-//   - a value stands in the units that hold at the end of its line (G20 F10: inches per minute);
-//   - E follows G90 and G91 like any axis until the program says M82 or M83, then those alone; bare G28 leaves E;
+// G-code reader: turns lines into motions in machine coordinates, one at a time, in memory that does not grow with the
+// program. G-code has the meaning that LinuxCNC gives it (RS274/NGC). Decisions where dialects differ:
+//   - a value is in the units that are in force at the end of its line (G20 F10: inches per minute);
+//   - E follows G90 and G91 like any axis until the program says M82 or M83, and only these from then on; G28 without
+//     axis letters does not move E;
 //   - G4 P is in seconds, and so is G4 S; a line with '/' is skipped (ReaderOptions);
-//   - G28 takes axis letters without numbers; G31 is G38.3 for one line; O1234 before all words is no subroutine;
-//   - M2, M30 or a '%' that does not open the program end it. What follows M2 and M30 is not read; beside a '%' and
-//     behind the last one only blanks and comments may stand;
-//   - lines of slicers for hardware that the card does not have are left out and told (ReaderOptions::left_out);
-//   - M3 to M5 and M7 to M9 switch the outputs that the machine file names for them, before the line's motion, and M2
-//     and M30 switch all of these off; other ends of the program leave them;
-//   - a lower-case e right behind a number looks like an exponent, which G-code does not have: it is refused;
-//   - Q of G64 (naive cam) has no effect and is told.
+//   - G28 takes axis letters without numbers; G31 is G38.3 for one line; O1234 before all words is a program number,
+//     not a subroutine;
+//   - M2, M30 or a '%' that does not open the program end it. Lines after M2 and M30 are not read; on the line of a
+//     '%', and after the last one, only blanks and comments are allowed;
+//   - lines of slicers for hardware that the card does not have are left out and reported (ReaderOptions::left_out);
+//   - M3 to M5 and M7 to M9 switch the outputs that the machine file names for them, before the line's motion. M2 and
+//     M30 switch all of these off; other ends of the program do not;
+//   - a lower-case e directly after a number looks like an exponent, which G-code does not have: it is refused;
+//   - Q of G64 (naive cam) has no effect and is reported.
 #pragma once
 
 #include <cstddef>
@@ -36,52 +38,55 @@ struct CodeWord {
 
 // The operator's switches.
 struct ReaderOptions {
-  bool block_delete = true;  // lines with '/' are skipped; else they are lines like any other
-  double feed_scale = 1;     // on every programmed feed, > 0; no motion's path depends on it
-  // Words whose lines are left out beside those that always are, none of which why_not_left_out() speaks against.
+  bool block_delete = true;  // skip lines that begin with '/'; else read them like any other
+  double feed_scale = 1;     // factor on every programmed feed, > 0; it changes no path
+  // Words whose lines are left out, in addition to the words of the reader's own table. why_not_left_out() must be
+  // empty for each of them.
   std::vector<CodeWord> left_out;
-  // At a word that could be left out, read on to the end of the program: the error names all of these.
+  // At a word that could be left out, read on to the end of the program, so that the error names all such words.
   bool name_all_unknown = false;
-  // Numbered parameters before the first line: #1 to #5000, offsets and homes as LinuxCNC numbers them.
+  // Values of numbered parameters before the first line: #1 to #5000, offsets and homes as LinuxCNC numbers them.
   std::map<int, double> parameters;
-  // What holds before the first line: 30, 40 or 50 for M3, M4 or M5, whose outputs are so already, and S.
+  // Spindle state before the first line: 30, 40 or 50 for M3, M4 or M5 (the outputs already have this state), and S.
   int spindle = 50;
   double spindle_speed = 0;
 };
 
-// Not thread-safe; allocates nothing after its first lines.
+// Not thread-safe; allocates no memory after the first lines.
 class Reader {
  public:
-  // `start` is where the machine stands. Lines and machine must outlive the reader.
+  // `start`: position of the machine. Lines and machine must outlive the reader.
   Reader(LineSource& lines, const machine::Machine& machine, const Coordinates& start = {},
          const ReaderOptions& options = {});
   ~Reader();
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;
 
-  // False after the motion kEnd, and at the first error: then error() tells it. A line gives all of its motions or
-  // none.
+  // Gets the next motion. Returns false after the motion kEnd and at the first error, which error() then describes. A
+  // line gives all of its motions or none.
   bool next(Motion& motion);
   const std::optional<Error>& error() const;
 
-  // Before the first next(): a program that ends before line `line` is an error.
+  // Before the first next(): makes it an error if the program ends before line `line`.
   void must_reach(std::size_t line);
 
-  // Words without effect yet and how often, so far, such as {"M3", 2}.
+  // Words accepted without effect, such as {"M3", 2}, with their count so far.
   const std::map<std::string, std::size_t>& accepted() const;
-  // After a motion kProbe next() gives false, without an error, until one of the next two tells where it ended.
+  // After a motion kProbe, next() returns false without an error until probed() or assume_probed() tells where the
+  // probe ended.
   bool awaits_probe() const;
-  // Machine coordinates: where the probe's input changed, and where the machine stands. `tripped`: it did change.
+  // Machine coordinates: `edge`, where the probe's input changed, and `rest`, where the machine is. `tripped`: the
+  // input did change.
   void probed(const Coordinates& edge, const Coordinates& rest, bool tripped);
-  // For a check of the program before it runs: at the motion's target, but not known yet. What depends on it can only
-  // be checked when it is reached (Motion::later).
+  // For a check of the program before it runs: the probe ends at its target, as an assumption. Lines that depend on it
+  // can only be checked when they are reached (Motion::later).
   void assume_probed();
-  // Lines so far that depend on assumed probes.
+  // The number of lines so far that depend on assumed probes.
   std::size_t lines_on_probes() const;
-  // Parameters, offsets and homes by number, those that are not 0.
+  // Parameters, offsets and homes by number; without those that are 0.
   std::map<int, double> parameters() const;
 
-  // For messages.
+  // Name of the source, for messages.
   const std::string& file() const;
 
  private:
@@ -89,11 +94,11 @@ class Reader {
   std::unique_ptr<Impl> impl_;
 };
 
-// Why lines that begin with a word are never left out: it moves the machine, or other lines depend on it. Empty where
-// they can be.
+// The reason why lines that begin with this word are never left out: it moves the machine, or other lines depend on it.
+// Empty if they can be left out.
 std::string_view why_not_left_out(const CodeWord& word);
 
-// Every word that the reader understands, as "G38.2", "X" or "M104"; and those that it refuses with a reason.
+// All words that the reader understands, such as "G38.2", "X" or "M104"; and those that it refuses with a reason.
 std::vector<std::string> known_words();
 std::vector<std::string> refused_words();
 

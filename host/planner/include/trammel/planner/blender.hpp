@@ -1,11 +1,13 @@
-// G64 P: corners become arcs that are tangent to both motions. Sits between reader and BlockBuilder, pulls, and holds
-// one motion. Not thread-safe; computed in + - * / and square roots alone.
+// G64 P: replaces corners by arcs that are tangent to both motions. Used between reader and BlockBuilder: pulls from
+// the reader and holds one motion. Not thread-safe. Computes with + - * / and square roots only, so that every host
+// gets the same result.
 //
-// A blend leaves the programmed path by at most P: that is how far the corner lies from it, and no other point of
-// either path is farther from the other one. It takes at most half of either motion, so that what it does depends on
-// these two alone. Outputs that are switched at a corner are switched where its blend begins (eight words; a corner
-// with more is kept). Two lines make an arc in their plane, lines and arcs in one main plane an arc in that. Axes other
-// than X, Y and Z go evenly along it; how far they stray does not count.
+// A blend deviates from the programmed path by at most P: this is the distance from the corner to the blend, and no
+// other point of either path is farther from the other path. A blend replaces at most half of each motion, so it
+// depends on these two motions only. Outputs that the program switches at a corner are switched where its blend begins.
+// (Up to eight output words; a corner with more is kept.) The blend of two lines is an arc in their plane. The blend of
+// lines and arcs in one main plane is an arc in that plane. Axes other than X, Y and Z move evenly along the blend;
+// their deviation is not limited.
 #pragma once
 
 #include <array>
@@ -22,15 +24,17 @@ struct CornerSide;
 class CornerTime;
 struct Fillet;
 
-// What becomes of a corner under G64 P.
+// The treatment of a corner under G64 P.
 enum class Corner : std::uint8_t {
-  kNone,       // there is none, or none was asked for
-  kBlended,    // by the motion itself, which is the blend
-  kReversal,   // less than a degree off
-  kNoCurve,    // a helix, an arc outside the other motion's plane, or no room for an arc
-  kInvisible,  // the blend would keep within a quarter of a pulse and the corner's rules allow its speed, or turns
-               // within three
-  kFaster,     // the corner's rules allow a speed at which it takes less time than the blend
+  kNone,      // no corner, or no tolerance was given
+  kBlended,   // replaced by the motion itself, which is the blend
+  kReversal,  // less than a degree off a reversal
+  kNoCurve,   // no tangent arc: a helix, an arc outside the other motion's plane, or too little room
+  // The blend would deviate by less than a quarter of a pulse and by no more than junction_deviation, so that the
+  // corner allows its speed; or its radius would be below three pulses.
+  kInvisible,
+  // Passing the corner at the speed that its rules allow takes less time than the blend.
+  kFaster,
 };
 inline constexpr std::size_t kCorners = 6;
 
@@ -44,14 +48,15 @@ struct SpaceArc {
   double sweep = 0;
 };
 
-// A motion with what blending makes of it. Blends are arcs, and count as of the line whose end they round.
+// A motion with the result of blending. Blends are arcs; they belong to the line whose end they replace.
 struct PathMotion : gcode::Motion {
-  gcode::Coordinates programmed{};  // where the program wants it to end; a blend's: where it ends
+  gcode::Coordinates programmed{};  // end point of the program; of a blend: its own end
   bool rapid = false;
-  bool tilted = false;  // a blend of lines in another plane than the main ones: an arc for which `space` says all
+  // A blend of two lines outside the main planes: an arc that `space` alone describes.
+  bool tilted = false;
   SpaceArc space;
-  double distance = 0;            // mm, a blend's from the corner
-  Corner corner = Corner::kNone;  // kBlended: a blend. Else what became of the corner at its end
+  double distance = 0;            // mm, of a blend: its distance from the corner
+  Corner corner = Corner::kNone;  // kBlended: this is a blend. else the treatment of the corner at its end
 };
 
 class Blender {
@@ -60,40 +65,41 @@ class Blender {
   Blender(gcode::Reader& reader, const machine::Machine& machine, const gcode::Coordinates& start);
   ~Blender();
 
-  // False where the reader's is, when all that was held is given.
+  // False when the reader's next() is false and no held motion is left.
   bool next(PathMotion& motion);
-  // Behind a probe: the machine stands somewhere else than its target.
+  // After a probe: the machine is at `here`, not at the probe's target.
   void resume_at(const gcode::Coordinates& here) { here_ = here; }
-  // Before the first next(): no blends.
+  // Before the first next(): disables blends.
   void keep_corners() { keep_corners_ = true; }
 
  private:
   using Vector = std::array<double, 3>;  // X Y Z
-  // A motion as it is programmed, with what was taken of it.
+  // A motion as programmed, with the shares of it that blends replace.
   struct Way {
     PathMotion motion;
     gcode::Coordinates start{};
-    double length = 0;        // of X, Y and Z; 0: none of these moves, or it is no motion
-    double taken_before = 0;  // share
-    double taken_behind = 0;
+    double length = 0;        // mm, of X, Y and Z; 0: none of these moves, or blends are not allowed
+    double taken_before = 0;  // share of the motion at its beginning, 0 to 1/2
+    double taken_behind = 0;  // share at its end
     // kArc
     double radius_start = 0;
     double radius_end = 0;
     double angle_start = 0;
     double sweep = 0;
-    bool flat = false;  // no way of X, Y and Z outside its plane
+    bool flat = false;  // X, Y and Z move in the arc's plane only
   };
   // A plane through a corner.
   struct Frame {
     Vector first;  // unit vectors, at right angles
     Vector second;
-    std::array<std::size_t, 2> letters{};  // of a main plane: X, Y and Z by 0, 1 and 2
+    std::array<std::size_t, 2> letters{};  // of a main plane: X, Y and Z as 0, 1 and 2
     bool main = false;
   };
+  // Directions before and after the corner, unit vectors.
   struct Turn {
     Vector from;
     Vector to;
-    double sine;  // of half the angle
+    double sine;  // of half the angle between them
   };
 
   bool pull(Way& way);
@@ -120,16 +126,17 @@ class Blender {
   gcode::Reader& reader_;
   std::size_t axes_;
   std::array<std::size_t, 3> space_{kNone, kNone, kNone};  // axis indices of X, Y and Z
-  double finest_ = 0;                                      // steps/mm, of these
+  double finest_ = 0;                                      // highest steps/mm of X, Y and Z
   double junction_deviation_;                              // mm
   std::unique_ptr<CornerTime> time_;
   bool keep_corners_ = false;
   gcode::Coordinates here_;
-  std::array<Way, 2> ways_;  // the one that may lose its end, and the one behind it
+  // [first_]: the motion whose end may still be replaced; the other one: the motion after it.
+  std::array<Way, 2> ways_;
   std::size_t first_ = 0;
   bool held_ = false;
-  std::array<PathMotion, kMaxOutputs> outputs_;    // between the two
-  std::array<PathMotion, kMaxOutputs + 2> given_;  // to be given, in order
+  std::array<PathMotion, kMaxOutputs> outputs_;    // switched between the two motions
+  std::array<PathMotion, kMaxOutputs + 2> given_;  // what next() returns, in order
   std::size_t given_first_ = 0;
   std::size_t given_count_ = 0;
 };

@@ -1,9 +1,10 @@
-// From motions to blocks: pulses, length, limits. What a program asks of machine and card is checked here: soft limits,
-// the range of the position counters, dwells. Pulls from the reader and holds one motion. Not thread-safe.
+// From motions to blocks: pulses, length, limits. Checks the program against machine and card: soft limits, the range
+// of the position counters, dwells. Pulls from the reader and holds one motion. Not thread-safe.
 //
-// Targets become pulses of the joints by rounding the absolute target, half away from zero: nothing drifts. Lengths and
-// limits are those of the path before rounding. Limits are smaller by max_override, its square and cube, and by
-// hold_reserve. Feeds hold along X Y Z; without those along U V W, then A B C, then E (as LinuxCNC).
+// The pulses of a joint are the rounded absolute target, half away from zero, so that errors do not add up. Lengths and
+// limits are those of the path before rounding. Limits of velocity, acceleration and jerk are divided by max_override,
+// its square and its cube; acceleration is also reduced by hold_reserve. A feed counts along X Y Z; if none of these
+// moves, along U V W, then A B C, then E (as in LinuxCNC).
 #pragma once
 
 #include <array>
@@ -24,22 +25,22 @@ class Detours;
 
 class BlockBuilder {
  public:
-  // `start`: where the machine stands, as the reader was told. Reader and machine must outlive the builder. Throws
+  // `start`: position of the machine, as the reader was told. Reader and machine must outlive the builder. Throws
   // driver::ArgumentError for step times that the card cannot keep.
   BlockBuilder(gcode::Reader& reader, const machine::Machine& machine, const CardLimits& card,
                const gcode::Coordinates& start = {});
   ~BlockBuilder();
 
-  // Outputs that are switched go with the next block; of several before it the last one wins, output by output.
-  //
-  // The next block; false after the one of kEnd, and at the first thing that reader, machine or card does not allow:
-  // then error() says what. A motion without a step gives no block: the line after it begins where it began, and has
-  // its corners as Block::detour.
+  // Gets the next block. Returns false after the kEnd block and at the first error (what reader, machine or card do not
+  // allow); error() then describes it. Switched outputs belong to the next block; if one output is switched several
+  // times before it, the last time counts. A motion without a step gives no block: the next line begins where that
+  // motion began, and has its corners as Block::detour.
   bool next(Block& block);
   const std::optional<gcode::Error>& error() const { return error_; }
 
-  // A probe stands next: next() has given all before it, and gives false until begin_probe(), then its way to the
-  // target as the only block, then false until resume_at() tells where the machine stands.
+  // Whether a probe is next. next() has then given all blocks before the probe, and returns false until begin_probe().
+  // It then gives one block, the motion to the probe's target, and returns false again until resume_at() gives the
+  // machine's position.
   bool at_probe() const { return probe_ != Probe::kNone; }
   const gcode::Motion& begin_probe();
   void resume_at(const Pulses& here);
@@ -47,7 +48,7 @@ class BlockBuilder {
   const Pulses& start() const { return start_; }
   // From the next block on, a motion of an axis without max_jerk is refused.
   void require_jerk() { jerk_required_ = true; }
-  // Before the first block: G64 P makes no blends, as where every line ends in a stop.
+  // Before the first block: G64 P makes no blends. For programs of which every line ends in a stop.
   void keep_corners() { blender_.keep_corners(); }
 
  private:
@@ -58,21 +59,21 @@ class BlockBuilder {
     double lowest;        // mm, soft limits
     double highest;
     bool linear;          // X, Y or Z
-    unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
+    unsigned feed_group;  // whose feed counts along it: 0 X Y Z, 1 U V W, 2 A B C, 3 E
   };
-  // What a joint of the card allows; velocity, acceleration and jerk infinite where its axes' limits alone hold.
+  // Limits of a joint of the card. Velocity, acceleration and jerk are infinite if only its axes have limits.
   struct JointRates {
-    double pulses;        // a second, the most that the shaper makes without a pause
+    double pulses;        // per second, the most that the shaper makes without a pause
     double velocity;      // mm/s
     double acceleration;  // mm/s^2
     double jerk;          // mm/s^3
   };
-  // What the axes and joints of an arc's plane allow in any direction of it.
+  // Limits that hold in every direction of an arc's plane.
   struct PlaneLimits {
-    double velocity;
-    double pulse_speed;  // mm/s
-    double acceleration;
-    double jerk;
+    double velocity;      // mm/s
+    double pulse_speed;   // mm/s
+    double acceleration;  // mm/s^2
+    double jerk;          // mm/s^3
   };
   enum class Probe : std::uint8_t { kNone, kReached, kBegun, kPlanned };
 
@@ -119,8 +120,8 @@ class BlockBuilder {
   PathMotion motion_;
   Pulses start_{};
   Pulses here_{};
-  gcode::Coordinates exact_{};   // where the program is, unrounded
-  gcode::Coordinates anchor_{};  // where the last block ended, unrounded
+  gcode::Coordinates exact_{};   // position of the program, unrounded
+  gcode::Coordinates anchor_{};  // end of the last block, unrounded
   std::unique_ptr<Detours> detours_;
   driver::OutputCommand outputs_;  // for the next block
   Probe probe_ = Probe::kNone;

@@ -1,10 +1,10 @@
-// Planner: from blocks to the card's stream commands, over as many blocks as look-ahead sees. Not thread-safe.
+// Planner: turns blocks into the card's stream commands, with look-ahead over a window of blocks. Not thread-safe.
 //
 //     BlockBuilder -> ring of blocks -> junctions -> SpeedPlan -> Quantiser -> CommandSink
 //
-// A path has N feed ticks: T for each pulse of its length, T up to 128 for even steps, less where the clock does not
-// allow it; the same T for all paths that a feed piece spans. The plan is a function of the program and the settings
-// alone, never of how fast it is read.
+// A path has T feed ticks per pulse of its length. T is up to 128, for even steps, and less if the clock does not allow
+// that; all paths that a feed piece spans have the same T. The plan depends on the program and the settings only, never
+// on how fast the program is read.
 #pragma once
 
 #include <array>
@@ -23,31 +23,32 @@
 
 namespace trammel::planner {
 
-// Raised where the same program, machine and settings give other commands than before.
+// Incremented when the same program, machine and settings give other commands than before.
 inline constexpr unsigned kPlanVersion = 1;
 
 enum class SpeedProfile {
-  kByMachine,  // S-curve where every axis has a max_jerk, else trapezoid
+  kByMachine,  // S-curve if every axis has a max_jerk, else trapezoid
   kTrapezoid,  // acceleration jumps
-  kSCurve,     // jerk is limited where an axis that moves has a max_jerk; BlockBuilder::require_jerk() asks for all
+  // Jerk is limited if a moving axis has a max_jerk; BlockBuilder::require_jerk() demands one of each.
+  kSCurve,
 };
 
-// Where a planner's paths stand on their way: the next one's first path gets the ticks that it would have had in the
-// same planner, so that a program in parts makes the steps of the whole, in their order.
+// The end of a planner's paths in mm and ticks. A planner that gets it gives its first path the ticks that this path
+// would have had in the planner before, so that a program in parts makes the same steps in the same order as the whole.
 struct PathTicks {
-  double density = 0;  // ticks a mm of the last path; 0: none yet
-  double base_mm = 0;  // where that density began
-  std::uint64_t base_tick = 0;
-  double end_mm = 0;
-  std::uint64_t end_tick = 0;
-  bool rapid = false;  // the last path's class
+  double density = 0;           // feed ticks per mm of the last path; 0: no path yet
+  double base_mm = 0;           // where that density began
+  std::uint64_t base_tick = 0;  // the tick there
+  double end_mm = 0;            // end of the last path
+  std::uint64_t end_tick = 0;   // the tick there
+  bool rapid = false;           // the last path's class
 };
 
 struct PlannerSettings {
   bool single_block = false;  // each line of the program ends in a stop
   SpeedProfile profile = SpeedProfile::kByMachine;
-  // Called before each block is read and before each ramp is planned, since one Planner::next() may take a whole window
-  // of them. What it throws passes through that call.
+  // Called before each block is read and before each ramp is planned, because one Planner::next() may do this for a
+  // whole window. next() passes on its exceptions.
   std::function<void()> meanwhile{};
   PathTicks ticks{};
 };
@@ -55,19 +56,20 @@ struct PlannerSettings {
 // kTrapezoid or kSCurve.
 SpeedProfile profile_of(const machine::Machine& machine, const PlannerSettings& settings);
 
-// What the commands came from.
+// The block that the commands belong to, with its planned times and speeds.
 struct PlannedBlock {
-  Block block;                           // complete before the first command is put, as are `seconds` and what follows
+  // Complete before the first command is put, like all fields after it.
+  Block block;
   double seconds = 0;                    // planned duration
-  double speed = 0;                      // mm/s along the path, the highest planned; 0 for what does not move
-  SpeedLimit limit = SpeedLimit::kNone;  // what keeps it below what the program wants
-  bool stop = false;                     // moves, and ends at rest
-  double velocity_jump = 0;              // mm/s, the largest of an axis at its end, where it has a corner
-  double acceleration_step = 0;          // mm/s^2, at its end, where it has no corner and the curvature changes
-  std::uint64_t commands = 0;            // put
-  std::uint64_t beside = 0;              // of these, the first ones: what takes effect where the block begins
-  std::uint64_t geometry = 0;            // of these, into the geometry queue: paths, barriers, outputs
-  std::uint64_t feed = 0;                // and into the feed queue: pieces and barriers
+  double speed = 0;                      // mm/s along the path, the highest planned; 0 if it does not move
+  SpeedLimit limit = SpeedLimit::kNone;  // why it is below the program's speed
+  bool stop = false;                     // it moves and ends at rest
+  double velocity_jump = 0;              // mm/s, the largest of an axis at its end, if there is a corner
+  double acceleration_step = 0;          // mm/s^2, at its end, if there is no corner and the curvature changes
+  std::uint64_t commands = 0;            // number of commands put
+  std::uint64_t beside = 0;              // of these, the first ones, which take effect at the block's beginning
+  std::uint64_t geometry = 0;            // of these, those for the geometry queue: paths, barriers, outputs
+  std::uint64_t feed = 0;                // of these, those for the feed queue: pieces and barriers
 };
 
 struct PathEntry;
@@ -79,15 +81,15 @@ class Planner {
           const PlannerSettings& settings = {});
   ~Planner();
 
-  // Puts the commands of the next block: what it switches, the feed pieces that begin in it, then its geometry, so that
-  // neither queue can fill up with what waits for the other. False after the last (kEnd), and when all before an error
-  // is given, which the builder has: the motion ends at rest there. What the sink throws passes through; the planner is
-  // then of no further use.
+  // Puts the commands of the next block in this order: outputs, the feed pieces that begin in the block, its geometry.
+  // So neither queue can fill up with commands that wait for the other queue. Returns false after the last block
+  // (kEnd), or, after an error (see the builder), when all blocks before it are put; the motion then ends at rest.
+  // Exceptions of the sink pass through; the planner is of no further use after one.
   bool next(driver::CommandSink& sink, PlannedBlock& planned);
 
-  // Behind the last block that was read.
+  // At the end of the last block that was read.
   const PathTicks& ticks() const;
-  // Of the speed plan.
+  // Work of the speed plan so far.
   const PlanWork& work() const;
 
  private:
@@ -104,10 +106,10 @@ class Planner {
 
   kinematics::Kinematics kinematics_;
   std::unique_ptr<LookAhead> look_ahead_;
-  bool pwm_;         // S sets pulses
+  bool pwm_;         // S sets the duty of the pulses on the outputs
   double clock_hz_;  // of the card
   double most_override_;
-  std::optional<driver::PwmCommand> pulses_;  // put last
+  std::optional<driver::PwmCommand> pulses_;  // the last one put
   driver::Command line_{driver::LineCommand{}};
   driver::Command piece_{driver::FeedCommand{}};
   driver::Command other_{driver::EndCommand{}};

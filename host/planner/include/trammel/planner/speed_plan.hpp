@@ -1,5 +1,5 @@
-// What look-ahead, speed plan and quantiser hand to each other. mm and seconds along the path (degrees for moves of
-// rotary axes alone).
+// The data that look-ahead, speed plan and quantiser exchange. Units: mm and seconds along the path (degrees if only
+// rotary axes move).
 #pragma once
 
 #include <algorithm>
@@ -9,25 +9,26 @@
 
 namespace trammel::planner {
 
-// Of an arc: acceleration along it and across it, which is turning * v^2, are `whole` together at the most. So are
-// `jerk` the jerk along it, with turning^2 * v^3, and that across it, which is 3 * turning * v * acceleration.
+// Limits on an arc. The vector sum of the acceleration along the path and the acceleration across it, turning * v^2, is
+// at most `whole`. The vector sum of the jerk along the path, increased by turning^2 * v^3, and the jerk across it, 3 *
+// turning * v * acceleration, is at most `jerk`.
 struct Curve {
-  double whole = 0;                                       // 0: no arc
+  double whole = 0;                                       // mm/s^2; 0: no arc
   double turning = 0;                                     // 1/mm
-  double at_rest = 0;                                     // the most along the path at any speed
-  double jerk = std::numeric_limits<double>::infinity();  // > 0
-  double jerk_at_rest = 0;                                // the most along the path at any speed
+  double at_rest = 0;                                     // mm/s^2, the most along the path at any speed
+  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, > 0
+  double jerk_at_rest = 0;                                // mm/s^3, the most along the path at any speed
 
-  // The acceleration along the path that is left at a speed, together with least_jerk() at that speed.
+  // The acceleration along the path that is left at a speed, if the jerk along the path is least_jerk() at that speed.
   double along(double speed) const {
     const double across = turning * speed * speed;
     const double kept = turned(speed) + kLeft * (1 - turned(speed));
     const double swung = std::sqrt(std::max(0.0, 1 - kept * kept)) * jerk / (3 * turning * speed);
     return std::min(std::sqrt(std::max(0.0, whole * whole - across * across)), swung);
   }
-  // The jerk along the path that along() leaves at any speed up to this one.
+  // The jerk along the path that along() leaves at any speed up to `speed`.
   double least_jerk(double speed) const { return kLeft * (1 - turned(speed)) * jerk; }
-  // The same at a speed up to this one with no more acceleration than this, which is at most along().
+  // The same at speeds up to `speed` with at most this acceleration, which is at most along().
   double jerk_along(double speed, double acceleration) const {
     const double swung = 3 * turning * speed * acceleration / jerk;
     const double left = std::sqrt(std::max(0.0, 1 - swung * swung)) - turned(speed);
@@ -35,21 +36,22 @@ struct Curve {
   }
 
  private:
-  static constexpr double kLeft = 0.6;  // for the jerk along the path, of what the turning leaves
+  // The share, for the jerk along the path, of the jerk that turning^2 * v^3 leaves.
+  static constexpr double kLeft = 0.6;
   double turned(double speed) const { return turning * speed * (turning * speed) * speed / jerk; }
 };
 
-// A stretch of path with limits of its own: a block, or a part of one.
+// A stretch of path with its own limits: a block, or a part of one.
 struct Span {
   double length = 0;        // > 0
-  double speed = 0;         // > 0, the most in it
-  double acceleration = 0;  // > 0, the most along the path at that speed, and so at any
+  double speed = 0;         // > 0, the most anywhere in it
+  double acceleration = 0;  // > 0, the most along the path at `speed`, and so at any speed
   double jerk = 0;          // > 0, the most along the path; infinite: no limit
-  double exit_speed = 0;    // >= 0, the most at its end, where a corner is; 0: a stop
+  double exit_speed = 0;    // >= 0, the most at its end, if there is a corner; 0: a stop
   Curve curve{};
 };
 
-// A part of the motion at constant jerk. Its borders lie anywhere along the path. Speed and acceleration are those at
+// A part of the motion at constant jerk. It may begin and end anywhere on the path. Speed and acceleration are those at
 // its beginning.
 struct Phase {
   double length = 0;    // > 0
@@ -57,37 +59,37 @@ struct Phase {
   double speed = 0;
   double acceleration = 0;
   double jerk = 0;
-  double next = 0;           // acceleration of the phase behind it, where acceleration may jump; 0 at a stop
-  bool stop = false;         // ends where finish() said
-  bool short_sight = false;  // slower than the path allows, because of what `window` does not show
+  double next = 0;           // acceleration of the next phase, in plans whose acceleration may jump; 0 at a stop
+  bool stop = false;         // ends at the stop that finish() set
+  bool short_sight = false;  // slower than the path allows, because the window ends
 };
 
 inline double end_speed(const Phase& phase) {
   return phase.speed + phase.duration * (phase.acceleration + phase.duration * phase.jerk / 2);
 }
 
-// What planning has taken so far, in counts that are the same on every host.
+// The work of planning so far, in counts that are the same on every host.
 struct PlanWork {
   std::uint64_t spans = 0;         // pushed
   std::uint64_t runs = 0;          // finished
   std::uint64_t windows = 0;       // planned
-  std::uint64_t window_spans = 0;  // in these, summed up
-  std::uint64_t ramps = 0;         // computed for these; where acceleration may jump: looks at a span
+  std::uint64_t window_spans = 0;  // sum of the windows' spans
+  std::uint64_t ramps = 0;         // ramps computed for the windows; in trapezoid plans: visits to a span
 };
 
-// Speeds along a path that is not known to its end. A function of the sequence of spans alone. Not thread-safe.
+// Speeds along a path whose end is not known yet. The plan depends on the sequence of spans only. Not thread-safe.
 class SpeedPlan {
  public:
   virtual ~SpeedPlan() = default;
 
-  // No further span fits: phases are to be taken first.
+  // No further span fits: take phases first.
   virtual bool full() const = 0;
   // The next stretch. Until another follows, the motion is planned to stop at its end.
   virtual void push(const Span& span) = 0;
-  // What was pushed last ends in a stop; spans after it begin from rest.
+  // The last span pushed ends in a stop; spans after it begin from rest.
   virtual void finish() = 0;
-  // The next phase, when the window is full or after finish(); false when a span is wanted first. The lengths of the
-  // phases add up to the spans'. In order, without gap.
+  // Gets the next phase, if the window is full or after finish(); false: push a span first. Phases come in order
+  // without gaps, and their lengths add up to the spans' lengths.
   virtual bool next(Phase& phase) = 0;
 
   const PlanWork& work() const { return work_; }
