@@ -1,7 +1,7 @@
 // A simulated card of this process that follows the host's time in the caller's thread: before each access, and in each
 // sleep, its clocks run up to the present time. This is cheaper than a served card, where every transfer is a round
-// trip between threads, for which there is no time at one kilohertz. After the process was stopped, the card is in the
-// state of a real one at the present time.
+// trip between threads, for which there is no time at one kilohertz. If the process was stopped for at most 2 s, the
+// card then has the state of a real one at the present time.
 #pragma once
 
 #include <chrono>
