@@ -35,12 +35,12 @@ transport::CardUrl card_of(const PlaceOptions& options, const char* command) {
       fmt::format("{}: needs --card, because a card that this command simulates has no position yet", command));
 }
 
-// A line for each axis: its position, and whether it is valid and homed.
+// A line for each axis: its position, and whether that is valid, homed, and kept through immediate stops.
 std::string table(const machine::Machine& machine, const run::CardPlace& place) {
   const gcode::Coordinates at = run::standing_at(machine, place);
   const std::string lost = run::axes_without(machine, place.bits.valid);
   const std::string not_homed = run::axes_without(machine, place.bits.homed);
-  // Any motor that may lose the axis's place makes the axis one that may.
+  // An axis keeps its place only if all of its motors do.
   const std::string not_kept = run::axes_without(machine, place.keeps);
   std::string text;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {

@@ -5,9 +5,8 @@
 // A command is a word of 16 bits, an address of 16 bits, and for a write its data:
 //
 //   bit 15     write
-//   bit 14     an address follows; commands without one are refused: they continue from the previous datagram's
-//   address,
-//              and that datagram may have been lost
+//   bit 14     an address follows; commands without one are refused: they continue from the address of the previous
+//              datagram, which may have been lost
 //   bit 13     read the description of a space; refused
 //   bits 12-10 space
 //   bits 9-8   unit: 1, 2, 4 or 8 bytes
