@@ -60,7 +60,8 @@ bool Controller::take(const std::string& line, bool at_rest) {
     if (busy && state_ == State::kIdle) return false;
     take_jog(line.substr(3));
   } else if (line[0] == '$') {
-    // Commands that use the machine are executed from work(), because `meanwhile` must not start machine operations.
+    // Commands that use the machine are executed from work(): within `meanwhile` the bus makes no further calls of it,
+    // so nothing would be served during such a command.
     const bool moves = state_ == State::kRun || state_ == State::kJog;
     if (line != "$G" && line != "$" && !moves && (busy || !at_rest)) return false;
     system(line);

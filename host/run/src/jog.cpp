@@ -77,8 +77,8 @@ void Jog::begin(const JogPath& path, double speed) {
   if (path.ramped_by_time_base) {
     set_speed(speed);
   } else {
-    // At full ratio the jog begins when a complete stop is queued. A path that is shorter than that is queued whole and
-    // ends at rest.
+    // The card starts at full ratio as soon as a complete stop is queued, and would go into an under-run hold if
+    // nothing more followed. So enough lines are sent at once.
     feed(std::numeric_limits<int>::max());
   }
 }
