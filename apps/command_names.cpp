@@ -10,7 +10,7 @@
 namespace trammel::app {
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-  // distance[i][j]: between the first i letters of a and the first j of b.
+  // distance[i][j]: distance between the first i letters of a and the first j of b.
   std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -27,12 +27,12 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 namespace {
 
-constexpr std::size_t kQuoted = 40;  // characters of a word that a message repeats
+constexpr std::size_t kQuoted = 40;  // longest part of a word that a message repeats, characters
 
-// ": did you mean X?", or nothing where no name is near.
+// ": did you mean X?", or empty if no name is similar.
 std::string hint_at_nearest(const std::vector<std::string>& names, const std::string& word) {
   std::string nearest;
-  std::size_t least = 3;  // further away nothing is meant
+  std::size_t least = 3;  // a larger distance is not a misspelling
   for (const std::string& name : names) {
     const std::size_t distance = edit_distance(name, word);
     if (distance >= least || distance >= name.size()) continue;

@@ -1,4 +1,4 @@
-// The command line's first word, before the options are read.
+// Checks the command line's words before the options are read.
 #pragma once
 
 #include <optional>
@@ -9,15 +9,15 @@
 
 namespace trammel::app {
 
-// `words` as the option reader wants them: "help" and "help X" become "--help" and "X --help".
-// Throws UsageError for a subcommand that there is not; the message names the nearest one.
+// Converts `words` for the option reader: "help" and "help X" become "--help" and "X --help". Throws UsageError for an
+// unknown subcommand; the message names the nearest one.
 std::vector<std::string> subcommand_words(const CLI::App& app, std::vector<std::string> words);
 
-// What is wrong with the first of `words` that looks like an option and is none of the subcommand that was parsed, with
-// the nearest one's name. Nothing where there is no such word.
+// The error message for the first of `words` that looks like an option and is not one of the parsed subcommand, with
+// the nearest option's name. None if there is no such word.
 std::optional<std::string> unknown_option_text(const CLI::App& app, const std::vector<std::string>& words);
 
-// How many letters must be put in, left out, changed or swapped with their neighbour to make one word of the other.
+// The number of letters to insert, delete, change or swap with their neighbour to turn one word into the other.
 std::size_t edit_distance(const std::string& a, const std::string& b);
 
 }  // namespace trammel::app

@@ -50,11 +50,11 @@ void parse(CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   words = subcommand_words(app, std::move(words));
   try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the end
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the words from the end
   } catch (const CLI::ExtrasError& error) {
     throw UsageError(fmt::format("{} (--help tells more)", unknown_option_text(app, words).value_or(error.what())));
   } catch (const CLI::ParseError& error) {
-    // Help and version count as errors too, of status 0.
+    // CLI11 throws help and version as errors with status 0.
     if (error.get_exit_code() != 0) throw UsageError(fmt::format("{} (--help tells more)", error.what()));
     app.exit(error);
     std::cout.flush();

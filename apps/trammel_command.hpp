@@ -1,9 +1,9 @@
-// The trammel command: subcommands, and what the shell sees when one fails.
+// The trammel command: its subcommands, and exit status and messages when one fails.
 #pragma once
 
 namespace trammel::app {
 
-// The exit status.
+// Returns the exit status.
 int run_command_line(int argc, char** argv, const char* version);
 
 }  // namespace trammel::app

@@ -28,7 +28,7 @@ constexpr const char* kPlaceIsVoid =
     "the new scale makes the position that a card keeps invalid, for all axes. Run `trammel zero` with all axes where "
     "they stand, then home again";
 
-// The file to change. A pipe has been read and cannot be changed.
+// The file to change. A pipe has already been read and cannot be changed.
 std::string file_to_write(const std::optional<std::string>& source) {
   if (!source)
     throw UsageError(

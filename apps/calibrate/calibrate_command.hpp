@@ -1,4 +1,4 @@
-// `trammel calibrate`: steps_per_mm from a measured distance, and into the machine file.
+// `trammel calibrate`: computes steps_per_mm from a measured distance and writes it to the machine file.
 #pragma once
 
 #include "common/command_line.hpp"

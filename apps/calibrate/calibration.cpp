@@ -15,7 +15,7 @@ namespace {
 using machine::Machine;
 using machine::MachineAxis;
 
-// Beyond these a switch of the drive or a unit is wrong by a whole factor, which no measured distance should hide.
+// A ratio outside these bounds indicates a wrong setting of the drive or a wrong unit; a scale must not hide that.
 constexpr double kLeastRatio = 0.5;
 constexpr double kMostRatio = 2;
 
@@ -45,13 +45,13 @@ void check_distances(const Measured& measured, char letter) {
                   letter, ratio, kLeastRatio, kMostRatio));
 }
 
-// With crossed belts both motors move X, and Y: only a factor for both makes the measured axis right.
+// With crossed belts both motors move X and Y, so only a factor for both corrects the measured axis.
 std::string letters_to_change(const Machine& machine, char letter) {
   const bool belts = machine.kinematics.name == "corexy" && (letter == 'X' || letter == 'Y');
   return belts ? "XY" : std::string(1, letter);
 }
 
-// Places that somebody may have read off the axis, which are a little elsewhere now.
+// Positions that were possibly measured on the axis in the old scale, and are slightly wrong now.
 std::string doubt_about(const MachineAxis& axis) {
   const bool limits = std::isfinite(axis.min) || std::isfinite(axis.max);
   if (!limits && !axis.homing) return {};

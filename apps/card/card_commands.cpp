@@ -34,16 +34,16 @@ using driver::Card;
 
 struct LookOptions {
   CardChoice card;
-  double interval = 0.2;     // monitor: seconds of the card
-  std::uint64_t looks = 0;   // monitor: 0 for ever
+  double interval = 0.2;     // monitor: seconds of card time
+  std::uint64_t looks = 0;   // monitor: number of updates; 0: no limit
   unsigned exchanges = 200;  // selftest
-  bool inputs = false;       // selftest: switches are waited for,
-  double switch_time = 30;   // each so many seconds
-  MachineChoice machine;     // drives
+  bool inputs = false;       // selftest: wait for switches,
+  double switch_time = 30;   // at most this many seconds for each
+  MachineChoice machine;     // for drives
   std::string order;
 };
 
-// The card of --card, or a simulated one, which is made for nothing else.
+// Uses the card of --card, or a simulated card that is created only for this command.
 template <class Use>
 void look_at(const CardChoice& choice, Purpose purpose, Use use) {
   if (const auto url = choice.url()) {
@@ -101,7 +101,7 @@ std::string state_of(const driver::Snapshot& now) {
 
 bool switches_drives(const Card& card) { return map::has_engine(card.identification().engines, map::engine::kEnables); }
 
-// Where the card switches drives.
+// For a card that switches drives.
 std::string drives_text(Card& card, const driver::Status& now) {
   const bool any = card.parts().registers.read(reg::kEnableAxes) != 0;
   return fmt::format("drives   {}{}{}", now.enabled ? "enabled" : "disabled",
@@ -127,7 +127,7 @@ std::vector<std::string> table(Card& card, const std::vector<run::AssignedInput>
   const driver::Identification& id = card.identification();
   std::array<driver::Access, 3> room{driver::read_of(reg::kGeometryRoom), driver::read_of(reg::kFeedRoom)};
   card.parts().registers.transfer(room.data(), 2, "monitor");
-  // RATE counts 2^-32 feed ticks an enabled clock, RATIO 2^-16.
+  // RATE is in 2^-32 feed ticks per enabled clock, RATIO in 2^-16.
   const double rate = static_cast<double>(now.rate) / 4294967296.0 * id.clock_hz;
   std::vector<std::string> lines;
   lines.push_back(fmt::format("time     {:.3f} s", static_cast<double>(now.time) / id.clock_hz));
@@ -146,7 +146,7 @@ std::vector<std::string> table(Card& card, const std::vector<run::AssignedInput>
   return lines;
 }
 
-// On a terminal the table stays where it is; elsewhere the tables come one below the other.
+// On a terminal the table is updated in place; elsewhere the tables are printed one after the other.
 void monitor(Card& card, const LookOptions& options) {
   const bool terminal = ::isatty(STDOUT_FILENO) == 1;
   const std::chrono::nanoseconds pause(static_cast<std::int64_t>(options.interval * 1e9));
@@ -163,7 +163,7 @@ void monitor(Card& card, const LookOptions& options) {
 
 // --- selftest ---
 
-// What was tried, and what came of it.
+// Prints the tests and their results.
 class Checks {
  public:
   void add(const std::string& what, const std::string& wrong, const std::string& good = "") {
@@ -180,14 +180,14 @@ class Checks {
   unsigned failed_ = 0;
 };
 
-// No pin, no queue and no interrupt depends on these while the card is idle.
+// Registers that affect no pin, queue or interrupt while the card is idle.
 bool may_be_tried(const map::Register& entry) {
   constexpr std::string_view kTried[] = {"STEP_LENGTH", "STEP_SPACE", "DIR_SETUP",    "DIR_HOLD",     "HOLD_LIMIT",
                                          "SLEW",        "COUNT",      "FREQUENCY_LO", "FREQUENCY_HI", "LENGTH_LO"};
   return std::find(std::begin(kTried), std::end(kTried), entry.name) != std::end(kTried);
 }
 
-// Writes patterns and reads them back; what was there comes back.
+// Writes patterns and reads them back; then restores the old value.
 std::string try_setting(Card& card, const map::Register& entry, std::uint32_t address) {
   const std::uint32_t before = card.parts().registers.read(address);
   std::string wrong;
@@ -218,7 +218,7 @@ void try_settings(Card& card, Checks& checks) {
   checks.add("registers keep what is written", wrong, fmt::format("{} registers, 4 patterns each", tried));
 }
 
-// The card must refuse it, for that reason.
+// The card must refuse the access, for the given reason.
 std::string expect_refusal(Card& card, driver::Access access, map::Reason reason) {
   std::array<driver::Access, 2> accesses{access};
   try {
@@ -267,7 +267,7 @@ void try_link(Card& card, transport::Connection* connection, unsigned exchanges,
   checks.add("the link works", wrong, good);
 }
 
-// Each switch in turn, by hand.
+// Tests each switch in turn; the operator presses it.
 void try_inputs(Card& card, const LookOptions& options, Checks& checks) {
   const std::vector<run::AssignedInput> inputs = run::assigned_inputs(card);
   if (inputs.empty()) {
@@ -313,7 +313,7 @@ void selftest(Card& card, transport::Connection* connection, const LookOptions& 
 
 // --- drives ---
 
-// The order ENABLE.on: it holds until it is taken back, also when no program runs.
+// The order ENABLE.on stays in force until it is revoked, even if no program runs.
 void order_drives(Card& card, const machine::Machine& machine, const std::string& order) {
   if (!switches_drives(card)) throw UsageError("drives: this card has no outputs for drives (engine enables)");
   const driver::Status before = card.read_status();

@@ -4,7 +4,7 @@
 
 namespace trammel::app {
 
-// Registers `trammel monitor`, `dump` and `selftest`: looks at a card.
+// Registers `trammel monitor`, `dump`, `selftest` and `drives`, which inspect a card or switch its drives.
 void add_card_commands(CLI::App& app);
 
 }  // namespace trammel::app

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kTokenHint = "give the token that `trammel serve` printed, as ?token=... or in TRAMMEL_TOKEN";
 
-// Where the link or the card is not what it should be, before anything has moved.
+// Converts errors of the link and the card's identification, before any motion, to UsageError.
 template <class Call>
 auto opening(const transport::CardUrl& url, Call call) {
   try {
@@ -31,8 +31,8 @@ auto opening(const transport::CardUrl& url, Call call) {
   }
 }
 
-// A client that comes with the token is refused beside one that moves the card, and makes the card hold when it goes:
-// so reading does without, whatever the URL has.
+// A client that presents the token is refused while another one moves the card, and its disconnection makes the card
+// hold. So a reading client never presents it, even if it is in the URL.
 transport::CardUrl with_token(transport::CardUrl url, Purpose purpose) {
   if (purpose == Purpose::kRead) url.token.clear();
   const char* const token = std::getenv("TRAMMEL_TOKEN");
@@ -41,11 +41,11 @@ transport::CardUrl with_token(transport::CardUrl url, Purpose purpose) {
   return url;
 }
 
-// Of a card that has stopped with a fault. Its ramp may still be under way.
+// Position and remedy for a card with a fault. The card may still be on its ramp.
 std::string place_and_cure(driver::Card& card, const machine::Machine& machine) {
   try {
     card.wait_until_stopped();
-  } catch (const driver::TimeoutError&) {  // the text says that it is on its ramp
+  } catch (const driver::TimeoutError&) {  // the text says that the card is on its ramp
   }
   return stop_text(machine, read_stopped(card));
 }
@@ -122,7 +122,7 @@ void with_card(const transport::CardUrl& place, Purpose purpose,
   try {
     use(card, *connection);
   } catch (const driver::RefusedError& error) {
-    // A card says why; a server that was not asked for motion with a hello cannot.
+    // A card gives the reason; a server that got no hello with a request for motion cannot.
     const bool silent = url.kind == transport::CardUrl::Kind::kSerial || !url.hello;
     if (error.reason() != 0 || !silent || !url.token.empty()) throw;
     throw UsageError(fmt::format("--card {}: the card refuses commands that move it: {}", url.text, kTokenHint));

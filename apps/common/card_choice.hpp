@@ -1,4 +1,4 @@
-// --card: a card outside this process, for the subcommands that can do with one.
+// The option --card for an external card, for the subcommands that support one.
 #pragma once
 
 #include <functional>
@@ -22,31 +22,30 @@ struct CardChoice {
   std::optional<std::string> resume_file;
 
   void add_to(CLI::App& command);
-  // With --clear-faults, --trust-position and --resume-file, for a command that moves the card.
+  // Adds also --clear-faults, --trust-position and --resume-file, for a command that moves the card.
   void add_to_mover(CLI::App& command);
-  // None for a simulated card of this process. Throws UsageError for what is no card's URL.
+  // None for a simulated card of this process. Throws UsageError for text that is not a card's URL.
   std::optional<transport::CardUrl> url() const;
-  // Of the card's interrupted run. Only where there is a url().
+  // The file of the card's interrupted run. Only if there is a url().
   ResumeFile resume() const;
 };
 
 enum class Purpose { kRead, kMove };
 
-// Opens the card and lets `use` work with it. To move it, a token that the URL does not have is taken from
-// TRAMMEL_TOKEN. What keeps it from being opened, or from being moved by this user, is a
-// UsageError.
+// Opens the card and calls `use` with it. To move a card whose URL has no token, the token is taken from TRAMMEL_TOKEN.
+// Throws UsageError if the card cannot be opened, or may not be moved by this user.
 void with_card(const transport::CardUrl& url, Purpose purpose,
                const std::function<void(driver::Card&, transport::Connection&)>& use);
 
-// A machine with more motors than the card has axes is a UsageError.
+// Throws UsageError if the machine has more motors than the card has axes.
 void require_axes(const driver::Card& card, const machine::Machine& machine);
 
-// Makes it ready to be moved by this program, with a note where something of before is dropped. What the card knows of
-// an interrupted run is kept in its file first. A card that moves, and one with a fault that shall not be cleared, is a
-// UsageError. `resumes`: a run that goes on; the watchdog's fault is one that it clears.
+// Prepares the card to be moved by this program, with a note if leftovers of an earlier program are dropped. The card's
+// record of an interrupted run is first saved in its file. Throws UsageError for a card that moves, and for one with a
+// fault that must not be cleared. `resumes`: the run continues an interrupted one; it also clears the watchdog's fault.
 void take_over(driver::Card& card, const CardChoice& choice, const machine::Machine& machine, bool resumes = false);
 
-// The machine file's watchdog over a motion. A time that the card cannot count is a UsageError.
+// Enables the machine file's watchdog during a motion. Throws UsageError for a time that the card cannot count.
 class MotionWatchdog {
  public:
   MotionWatchdog(driver::Card& card, const machine::MotionSettings& motion);
@@ -55,11 +54,12 @@ class MotionWatchdog {
   std::optional<driver::WatchdogScope> scope_;
 };
 
-// After an error of the motion: where the card stands, how far on the path, and what to do about its fault, as a note;
-// nothing without a fault. Waits for the end of the ramp. Never throws: the error before it is the one that counts.
+// After an error of the motion: prints a note with the card's position, its place on the path, and the remedy for its
+// fault; nothing without a fault. Waits for the end of the ramp. Never throws, because the earlier error is the one to
+// report.
 void tell_of_fault(driver::Card& card, const machine::Machine& machine) noexcept;
 
-// Refuses options of the simulated card, by its URL's or its own.
+// Refuses `option` of the simulated card if it is `given` together with --card.
 void refuse_with_card(const CardChoice& card, const char* option, bool given);
 
 }  // namespace trammel::app

@@ -1,4 +1,4 @@
-// The option reader's types by their names: its own header takes seconds to compile.
+// Forward declarations of the option reader's types: its header takes seconds to compile.
 #pragma once
 
 namespace CLI {

@@ -19,7 +19,7 @@ namespace interpolation = interpolation;
 using interpolation::Arc;
 using interpolation::Curve;
 
-// `text` as `count` whole numbers with commas between them. Throws UsageError.
+// Converts `text` to `count` integers separated by commas. Throws UsageError.
 std::vector<std::int64_t> numbers(const char* option, std::string_view text, std::size_t count) {
   std::vector<std::int64_t> result;
   const char* at = text.data();
@@ -90,7 +90,7 @@ Curve CurveChoice::curve() const {
 }
 
 void VelocityChoice::add_to(CLI::App& command) {
-  // As make_interpolator() takes them.
+  // The range of make_interpolator().
   constexpr std::uint64_t kMax = std::uint64_t{1} << 30;
   command.add_option("--clock", clock_hz, "clock of the one-shot and divider methods (default 10000000)")
       ->transform(whole_number(1, kMax, "Hz"))
@@ -110,7 +110,7 @@ interpolation::Options VelocityChoice::options(const Curve& curve) const {
   if (line_curve == nullptr) return result;
   const std::uint64_t longest = interpolation::longest_axis(*line_curve);
   if (result.clock_hz == 0 || longest <= result.clock_hz / result.velocity) return result;
-  // clock * 2 * longest / clock clocks; the divisor and the velocity stay inside what make_interpolator takes.
+  // clock * 2 * longest / clock clocks; divisor and velocity stay within the ranges of make_interpolator().
   if (result.clock_hz > static_cast<std::uint64_t>(interpolation::kMaxLine)) return result;
   result.velocity = result.clock_hz;
   result.velocity_divisor = 2 * longest;

@@ -1,4 +1,4 @@
-// The options that name a curve, for every subcommand that takes one.
+// The options that define a curve, for every subcommand with a curve.
 #pragma once
 
 #include <optional>
@@ -18,18 +18,18 @@ struct CurveChoice {
 
   void add_to(CLI::App& command);
   bool given() const { return line || circle || arc || ellipse; }
-  // The one curve that was named. Throws UsageError when there is none, more than one, or one that no method can do.
+  // The curve. Throws UsageError if none or more than one is given, or if no method supports it.
   interpolation::Curve curve() const;
 };
 
-// The second paper's f and v, for the methods that know clocks.
+// The second paper's f and v, for the methods that count clocks.
 struct VelocityChoice {
   std::optional<std::uint64_t> clock_hz;
   std::optional<std::uint64_t> velocity;
 
   void add_to(CLI::App& command);
-  // 10 MHz and 5000 lines a second where not given; a default velocity that a long line cannot keep is lowered to one
-  // pulse in two clocks on its longest axis.
+  // Defaults: 10 MHz and 5000 lines per second. If a long line cannot be made at the default velocity, it is lowered to
+  // one pulse in two clocks on the longest axis.
   interpolation::Options options(const interpolation::Curve& curve) const;
 };
 

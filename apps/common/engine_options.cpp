@@ -25,7 +25,7 @@ CLI::Validator positive() {
 }
 
 namespace {
-// Refuses names that end in one of `others`.
+// Refuses names with a suffix in `others`.
 CLI::Validator file_of(const char* what, const char* suffix, std::vector<std::string> others) {
   return CLI::Validator(
       [what, suffix, others = std::move(others)](const std::string& text) {
@@ -87,7 +87,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::
   const std::string range = fmt::format("{} to {}{}{}", least, most, unit.empty() ? "" : " ", unit);
   return CLI::Validator(
       [=](std::string& text) {
-        // 1e6 is a whole number too.
+        // 1e6 also counts as an integer.
         double value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         const bool whole = error == std::errc{} && end == text.data() + text.size() && value == std::floor(value);

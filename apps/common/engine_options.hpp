@@ -1,4 +1,4 @@
-// Options that every subcommand with a simulated card shares.
+// Options common to all subcommands with a simulated card.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +14,32 @@ namespace trammel::app {
 
 // For options that must be greater than 0; CLI11's own message names the largest double.
 CLI::Validator positive();
-// The name of a picture that will be SVG, of a page or of a waveform: refuses names of other kinds of files.
+// For the file names of an SVG picture, a page and a waveform; they refuse names with the suffix of another kind.
 CLI::Validator svg_file();
 CLI::Validator page_file();
 CLI::Validator waveform_file();
-// One of an option's whole numbers of pulses, with its sign.
+// For one signed integer number of pulses.
 CLI::Validator pulses();
 
-// For whole numbers between two others; CLI11's own message has them as 4.29497e+09.
+// For integers in a range; CLI11's own message prints the bounds as 4.29497e+09.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::string& unit = "");
 
-// An option's FROM:TO in seconds, either of which may be missing, in clocks. Throws UsageError.
+// Converts an option's FROM:TO in seconds, either of which may be missing, to clocks. Throws UsageError.
 std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& option, const std::string& text,
                                                   std::uint32_t clock_hz);
 
 struct EngineChoice {
   std::string engine = "rtl";
   std::optional<std::uint32_t> clock_hz;
-  std::optional<std::string> trace;         // the option's file; who writes it is told a name by options()
+  std::optional<std::string> trace;         // the option's file; options() gives the name to write to
   std::optional<std::string> trace_window;  // FROM:TO
 
-  // `default_clock` says what options() gets.
+  // `default_clock`: text of the default clock that options() uses.
   void add_to(CLI::App& command, const std::string& default_clock = "1000000");
-  // Throws UsageError where something was chosen: the card is another.
+  // Throws UsageError if an option was given together with an external card.
   void refuse_with(const CardChoice& card) const;
-  // The engine's options for a card of `axes` (1 to 8); `rtl_clock` and `model_clock` are the clocks, in Hz, where none
-  // was given; `trace_file` is where the waveform goes, if one was asked for.
-  // Throws UsageError for what does not go together.
+  // The engine's options for a card of `axes` (1 to 8). `rtl_clock` and `model_clock` are the default clocks in Hz.
+  // Throws UsageError for options that contradict each other.
   sim::SimulationOptions options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const;
 };
 

@@ -1,4 +1,4 @@
-// What a subcommand throws when it was given something unusable: exit status 2. Anything else that is thrown gives 1.
+// A subcommand throws it for unusable input: exit status 2. Any other exception gives exit status 1.
 #pragma once
 
 #include <stdexcept>

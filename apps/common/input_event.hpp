@@ -1,4 +1,4 @@
-// Inputs that an option sets at a time of the card.
+// Inputs that an option sets at a given card time.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace trammel::app {
 
-// SECONDS:INPUT:LEVEL of --input-at, where INPUT may be estop; UsageError for what is malformed.
+// Parses SECONDS:INPUT:LEVEL of --input-at; INPUT may be estop. Throws UsageError for malformed text.
 simulation::OperatorEvent input_event(const std::string& text);
 
 }  // namespace trammel::app

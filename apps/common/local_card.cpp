@@ -75,7 +75,7 @@ class LocalCard::Served {
   }
 
  private:
-  // All steps on the path.
+  // Records all path steps.
   class Path final : public driver::StepSink {
    public:
     void pin_step(const driver::PinStep& /*step*/) override {}

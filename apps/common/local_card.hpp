@@ -1,4 +1,4 @@
-// A simulated card of this process that runs by itself, as one of `trammel serve` does.
+// A simulated card of this process that runs in its own thread, as that of `trammel serve` does.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@ namespace trammel::app {
 struct LocalCardChoice {
   std::string engine = "rtl";
   std::uint32_t clock_hz = 1'000'000;
-  bool fast = false;  // as fast as it can, not in real time
+  bool fast = false;  // at full speed instead of real time
   WorldChoice world;
 
-  // --engine, --clock, --fast, --world and --world-events.
+  // Adds --engine, --clock, --fast, --world and --world-events.
   void add_to(CLI::App& command);
 };
 
 class LocalCard {
  public:
-  // Begins to run at once. `axes`: 1 to 8. Throws UsageError for a world that cannot be read, and driver::LinkError.
+  // Starts to run at once. `axes`: 1 to 8. Throws UsageError for a world that cannot be read, and driver::LinkError.
   LocalCard(const LocalCardChoice& choice, unsigned axes);
   ~LocalCard();
   LocalCard(const LocalCard&) = delete;
   LocalCard& operator=(const LocalCard&) = delete;
 
-  // With its token.
+  // The card's URL, with its token.
   transport::CardUrl url() const;
-  // How many steps it has made on the path, and a number for their order, as of run::PathIdentity. Ends the card.
+  // Ends the card. Returns the number of its path steps, and a hash of their order, as in run::PathIdentity.
   std::string end();
 
  private:

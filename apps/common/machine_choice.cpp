@@ -19,7 +19,7 @@ constexpr const char* kBuiltIn = "built-in";
 
 std::optional<std::string> user_machine_file() {
   namespace fs = std::filesystem;
-  // The XDG Base Directory Specification: a relative path there is ignored.
+  // By the XDG Base Directory Specification a relative path is ignored.
   const char* const configuration = std::getenv("XDG_CONFIG_HOME");
   const char* const home = std::getenv("HOME");
   fs::path folder;

@@ -1,4 +1,5 @@
-// Which machine: the file of --machine, else the user's own, else the built-in one; and changes by --set.
+// Selects the machine: the file of --machine, else the user's machine file, else the built-in machine; changed by
+// --set.
 #pragma once
 
 #include <optional>
@@ -17,20 +18,20 @@ struct MachineChoice {
   std::vector<std::string> overrides;  // of --set
 
   void add_to(CLI::App& command);
-  // --machine alone.
+  // Adds only --machine.
   void add_file_to(CLI::App& command);
 
   // The file to read; none for the built-in machine.
   std::optional<std::string> source() const;
   // Throws machine::MachineError.
   machine::Machine load() const;
-  // Of the file's text and of --set, 16 digits.
+  // Hash of the file's text and of --set, 16 digits.
   std::string hash() const;
-  // For the summary: where the machine is from.
+  // The source of the machine, for the summary.
   std::string line() const;
 };
 
-// machine.toml in the folder trammel of $XDG_CONFIG_HOME, by default ~/.config; none where there is no such file.
+// machine.toml in the folder trammel of $XDG_CONFIG_HOME, by default ~/.config; none if there is no such file.
 std::optional<std::string> user_machine_file();
 
 }  // namespace trammel::app

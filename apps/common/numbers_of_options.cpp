@@ -9,7 +9,7 @@
 namespace trammel::app {
 namespace {
 
-constexpr double kLongest = 1e9;  // s, as for --trace-window
+constexpr double kLongest = 1e9;  // s, also the limit of --trace-window
 
 }  // namespace
 

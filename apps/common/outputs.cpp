@@ -19,17 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBuffer = 1U << 18U;  // a step list has up to some 10^8 rows
+constexpr std::size_t kBuffer = 1U << 18U;  // a step list has up to about 10^8 rows
 
-// An open file, not a name in a folder.
+// Whether the path is an open descriptor and not a name in a folder.
 bool is_descriptor(const fs::path& file) {
   return file.native().rfind("/proc/", 0) == 0 || file.native().rfind("/dev/fd/", 0) == 0;
 }
 
-// The file that a name leads to, whether it exists or not.
+// The target of a name after all links; it need not exist.
 fs::path follow_links(fs::path file) {
   std::error_code error;
-  constexpr int kMaxLinks = 40;  // as the kernel does
+  constexpr int kMaxLinks = 40;  // limit of the kernel
   for (int i = 0; fs::is_symlink(file, error); ++i) {
     if (i == kMaxLinks) throw UsageError(fmt::format("{}: too many symbolic links", file.string()));
     if (is_descriptor(file)) break;
@@ -41,7 +41,7 @@ fs::path follow_links(fs::path file) {
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
-// Empty for devices that take any number of writers, such as the null device: all but terminals.
+// Empty for devices that accept any number of writers, such as the null device; that is all except terminals.
 std::string identity_of(const struct stat& status, bool is_terminal) {
   if (S_ISCHR(status.st_mode) && !is_terminal) return {};
   return fmt::format("{}:{}", status.st_dev, status.st_ino);
@@ -52,7 +52,7 @@ std::string identity_of_descriptor(int descriptor) {
   return ::fstat(descriptor, &status) == 0 ? identity_of(status, ::isatty(descriptor) != 0) : std::string();
 }
 
-// Of a file that is there; empty where there is none.
+// Identity of an existing file; empty if there is none.
 std::string identity_of_file(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return {};
@@ -63,14 +63,14 @@ std::string identity_of_file(const fs::path& file) {
   return result;
 }
 
-// Two names of a file that is not there yet have the same folder and the same last part.
+// Two names of a file that does not exist yet have the same folder and the same last component.
 std::string identity_of_new_file(const fs::path& file) {
   return fmt::format("{}/{}", identity_of_file(folder_of(file)), file.filename().string());
 }
 
 }  // namespace
 
-// Looks at the destination, and creates and opens nothing.
+// Inspects the destination; creates and opens nothing.
 Output::Output(std::string option, std::string name, bool by_name)
     : option_(std::move(option)), name_(std::move(name)), by_name_(by_name) {
   if (name_.empty()) throw UsageError(fmt::format("{}: the name of the file is empty", option_));
@@ -81,7 +81,7 @@ Output::Output(std::string option, std::string name, bool by_name)
   if (!exists && name_ != "-" && errno != ENOENT) refuse(fmt::format("cannot be written: {}", strerror(errno)));
   identity_ = name_ == "-" ? identity_of_descriptor(STDOUT_FILENO)
                            : (exists ? identity_of_file(target_) : identity_of_new_file(target_));
-  // /dev/stdout and its like; a file to which standard output was led would otherwise get two contents.
+  // Also /dev/stdout and similar names; otherwise a file to which standard output is redirected would get two contents.
   const bool is_standard_output =
       name_ == "-" || (exists && !identity_.empty() && identity_ == identity_of_descriptor(STDOUT_FILENO));
   if (is_standard_output) {
@@ -134,7 +134,7 @@ void Output::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) fail();
 }
 
-// What was written by name goes where it was meant to.
+// Copies output that was written by name to its destination.
 void Output::copy_staged() {
   const int from = ::open(staged_->path().c_str(), O_RDONLY | O_CLOEXEC);
   std::array<char, 65536> buffer{};
@@ -146,7 +146,7 @@ void Output::copy_staged() {
   if (count < 0) fail();
 }
 
-// After this nothing is left that a disk could refuse but a name.
+// After this only the renaming can fail.
 void Output::finish() {
   if (by_name_ && kind_ != Kind::kRegular) copy_staged();
   std::FILE* const stream = std::exchange(stream_, nullptr);
@@ -168,10 +168,10 @@ void Output::take_name() {
   }
   const mode_t mask = ::umask(0);
   ::umask(mask);
-  // Owner and rights stay those of the file that is replaced, as far as this user may set them.
+  // Keeps owner and permissions of the replaced file, as far as this user may set them.
   if (existed_ && ::chown(from, status.st_uid, status.st_gid) != 0 && errno != EPERM) fail();
   if (::chmod(from, existed_ ? status.st_mode & 07777U : 0666U & ~mask) != 0) fail();
-  // An exchange keeps what was there until all names are taken. Not every file system can do it.
+  // An exchange keeps the old file until all names are taken. Not every file system supports it.
   const bool exchanged = existed_ && ::renameat2(AT_FDCWD, from, AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0;
   if (!exchanged && ::rename(from, target_.c_str()) != 0) fail();
   named_ = exchanged || !existed_;
@@ -195,7 +195,7 @@ Output* Outputs::add(const std::string& option, const std::optional<std::string>
 }
 
 void Outputs::keep(const std::string& what, const std::string& file) {
-  // A terminal may be read and written.
+  // A terminal may be both read and written.
   struct stat status {};
   const bool there = file == "-" ? ::fstat(STDIN_FILENO, &status) == 0 : ::stat(file.c_str(), &status) == 0;
   if (there) kept_.push_back({what, identity_of(status, false)});
@@ -227,7 +227,7 @@ void Outputs::open() {
 
 void Outputs::commit(const std::string& summary) {
   for (const auto& output : outputs_) output->finish();
-  finish_standard_streams();  // no summary of a run that failed
+  finish_standard_streams();  // before the summary, so a failed run prints none
   if (standard_output_taken_)
     to_standard_error(summary);
   else

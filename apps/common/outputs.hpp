@@ -1,7 +1,7 @@
-// The files that a subcommand writes: complete or absent. A regular file is written beside itself, and all of them take
-// their names together in commit(), when each is whole; until then what was there stays, and a failure or a signal
-// leaves no trace. What exists and is no regular file (a device, a FIFO, the /dev/fd/N of a process substitution) is
-// written as it comes. A symbolic link is followed. "-" is standard output. Not thread-safe.
+// The files that a subcommand writes: complete or absent. A regular file is written under a temporary name in the same
+// folder. commit() renames all files together when each of them is complete. Until then the old files stay, and a
+// failure or a signal leaves no trace. Existing non-regular files (devices, FIFOs, the /dev/fd/N of a process
+// substitution) are written directly. A symbolic link is followed. "-" is standard output. Not thread-safe.
 #pragma once
 
 #include <cstdio>
@@ -22,9 +22,9 @@ class Output final : public run::TextSink {
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
-  // Throws std::runtime_error when the destination does not take it all.
+  // Throws std::runtime_error if the destination does not accept all of the text.
   void write(std::string_view text) override;
-  // For who writes by name: a temporary file of commit()'s to move or copy. Not together with write().
+  // For writers that need a name: a temporary file, which commit() moves or copies. Not together with write().
   std::string path_to_write() const { return staged_->path().string(); }
 
  private:
@@ -39,32 +39,32 @@ class Output final : public run::TextSink {
   [[noreturn]] void fail() const;
 
   std::string option_;
-  std::string name_;  // as it was given
+  std::string name_;  // the name as given
   bool by_name_;
   Kind kind_ = Kind::kRegular;
-  std::filesystem::path target_;  // links followed
-  std::string identity_;          // equal for two names of one file; empty where several writers do no harm
+  std::filesystem::path target_;  // the file after following links
+  std::string identity_;          // equal for two names of one file; empty if several writers are harmless
   std::unique_ptr<TemporaryFile> staged_;
   std::FILE* stream_ = nullptr;
-  bool existed_ = false;  // the target did when it was replaced; its content then lies at the staged name
-  bool named_ = false;    // take_name() was done
+  bool existed_ = false;  // the target existed and was replaced; the staged name now holds its old content
+  bool named_ = false;    // take_name() was executed
 };
 
 class Outputs {
  public:
-  // An option and its file; nullptr where none was given. by_name: see Output::path_to_write().
+  // Adds an option and its file; returns nullptr if no file is given. by_name: see Output::path_to_write().
   Output* add(const std::string& option, const std::optional<std::string>& file, bool by_name = false);
-  // No output may be this file: `what` is "the program" or the like; "-" is standard input.
+  // Forbids this file as an output. `what`: such as "the program", for the message; "-" is standard input.
   void keep(const std::string& what, const std::string& file);
-  // Refuses the same file twice and the files to keep with UsageError; add() has refused what cannot be written.
-  // Nothing is opened or made.
+  // Throws UsageError if a file is used twice, or is one of the files to keep; add() has already refused files that
+  // cannot be written. Opens and creates nothing.
   void check() const;
-  // After check().
+  // Opens the files; call after check().
   void open();
-  // All outputs whole, or none; `summary`, for people, goes to standard output, or to standard error where an option
-  // has taken that, once nothing but a name can fail. Throws std::runtime_error.
+  // Completes all outputs, or none. Prints `summary` for people on standard output, or on standard error if an option
+  // writes to standard output; this happens when only a rename can still fail. Throws std::runtime_error.
   void commit(const std::string& summary = {});
-  // In place of it, of a run that failed: this one alone; the others leave no trace.
+  // Replaces commit() after a failed run: completes only this output; the others leave no trace.
   void commit_alone(Output& output);
 
  private:

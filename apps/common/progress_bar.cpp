@@ -28,7 +28,7 @@ void ProgressBar::show(double done, const std::string& note) {
   last_ = now;
   done = std::clamp(done, 0.0, 1.0);
   const double elapsed = std::chrono::duration<double>(now - begun_).count();
-  // The first second says little of the rest.
+  // The first second does not predict the rest.
   const std::string left =
       elapsed > 1 && done > 0 ? fmt::format(", {} left", duration_text(elapsed * (1 - done) / done)) : std::string();
   if (lines_) {
@@ -36,7 +36,7 @@ void ProgressBar::show(double done, const std::string& note) {
     return;
   }
   drawn_ = true;
-  constexpr std::size_t kWidth = 20;  // all of the line within 80 columns
+  constexpr std::size_t kWidth = 20;  // keeps the line within 80 columns
   const auto full = static_cast<std::size_t>(done * kWidth);
   to_standard_error(fmt::format("\r\033[K[{}{}] {:3.0f} %  {}{}", std::string(full, '#'),
                                 std::string(kWidth - full, '.'), 100 * done, note, left));

@@ -1,5 +1,5 @@
-// How far the work is, on stderr: a bar on a terminal; elsewhere nothing, or, when asked for, plain lines now and then.
-// Not thread-safe.
+// Shows progress on stderr: a bar on a terminal; elsewhere nothing, or plain lines at intervals if requested. Not
+// thread-safe.
 #pragma once
 
 #include <chrono>
@@ -9,14 +9,14 @@ namespace trammel::app {
 
 class ProgressBar {
  public:
-  // `always`: lines where stderr is no terminal.
+  // `always`: print lines if stderr is not a terminal.
   explicit ProgressBar(bool always);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // `done` from 0 to 1; `note` stands after it. A bar is redrawn at most ten times a second, a line written at most
-  // every ten seconds.
+  // `done`: 0 to 1; `note` is printed after it. A bar is redrawn at most ten times per second; a line is written at
+  // most every ten seconds.
   void show(double done, const std::string& note);
 
  private:
@@ -28,7 +28,7 @@ class ProgressBar {
   Clock::time_point last_{};
 };
 
-// As a person says it: "12 s", "4 min", "3 h".
+// A rounded duration: "12 s", "4 min", "3 h".
 std::string duration_text(double seconds);
 
 }  // namespace trammel::app

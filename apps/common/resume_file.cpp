@@ -29,7 +29,7 @@ constexpr const char* kStates[] = {"running", "stopped", "done"};
 constexpr const char* kZeroSet =
     "machine zero was set anew since the interrupted run, so the position where it stopped is not known any more";
 
-// The XDG Base Directory Specification: a relative path there is ignored.
+// By the XDG Base Directory Specification a relative path is ignored.
 fs::path state_folder() {
   const char* const state = std::getenv("XDG_STATE_HOME");
   const char* const home = std::getenv("HOME");
@@ -38,7 +38,7 @@ fs::path state_folder() {
   return {};
 }
 
-// The card's URL with all but letters, digits, dots and hyphens as underscores.
+// The card's URL, with underscores in place of all characters except letters, digits, dots and hyphens.
 std::string file_name(const std::string& card) {
   std::string name = "resume-" + card + ".json";
   for (char& c : name) {
@@ -102,7 +102,7 @@ ResumeRecord record_of(const Json& json) {
   return record;
 }
 
-// "--arcs" differs from nothing, too.
+// An option that only one of the keys has counts as different.
 std::string differing_option(const ResumeKey& before, const ResumeKey& now) {
   const auto value = [](const ResumeKey& key, const std::string& name) {
     const auto found = key.options.find(name);
@@ -118,7 +118,7 @@ std::string differing_option(const ResumeKey& before, const ResumeKey& now) {
   return {};
 }
 
-// Of a card that nothing has stopped since: it has made all that it was sent.
+// The place of a card that was not stopped since: it has executed all commands.
 driver::Rest rest_without_stop(driver::Card& card, const ResumeRecord& record) {
   const driver::Snapshot now = card.read_snapshot();
   if (now.time <= record.time) throw UsageError("the card was reset since the interrupted run");
@@ -167,7 +167,7 @@ void ResumeFile::write(const ResumeRecord& record) const {
   if (path_.empty()) return;
   bool there = false;
   try {
-    there = read().has_value();  // another file with its name is left alone
+    there = read().has_value();  // a file of another kind with this name is not overwritten
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}; name another file with --resume-file", error.what()));
   }

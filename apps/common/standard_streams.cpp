@@ -18,7 +18,7 @@ namespace {
 
 }  // namespace
 
-// A descriptor of O_PATH can be neither read nor written; a directory cannot be opened again for either by way of
+// A descriptor of O_PATH can be neither read nor written, and a directory cannot be reopened for either through
 // /proc/self/fd.
 void hold_standard_descriptors() {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
@@ -36,7 +36,7 @@ void to_standard_error(std::string_view text) noexcept { (void)std::fwrite(text.
 
 void finish_standard_streams() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail_stream("standard output");
-  // It is not buffered.
+  // Standard error is not buffered.
   if (std::ferror(stderr) != 0) fail_stream("standard error");
 }
 

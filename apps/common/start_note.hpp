@@ -1,12 +1,12 @@
-// Where a command that moves a card outside begins, told before anything moves.
+// Reports the starting position of a command that moves an external card, before any motion.
 #pragma once
 
 #include "trammel/run/card_place.hpp"
 
 namespace trammel::app {
 
-// A note on standard error: that machine zero is here since the card was reset, or where the machine stands, and which
-// soft limits are off; nothing at machine zero with all limits.
+// Prints a note on standard error: that machine zero is at the present position because the card was reset, or the
+// machine's position; and which soft limits are off. Prints nothing at machine zero with all limits.
 void tell_of_start(const run::Start& start, const run::CardPlace& found);
 
 }  // namespace trammel::app

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
 
-// What the handler uses.
+// Data of the signal handler.
 std::atomic<driver::Card*> g_card{nullptr};
 volatile sig_atomic_t g_signal = 0;
 std::array<struct sigaction, kSignals.size()> g_before;
@@ -32,7 +32,7 @@ extern "C" void stop_the_card(int signal) {
 
 }  // namespace
 
-// Calls that a signal interrupts go on: the driver looks for the request between them.
+// Interrupted system calls are restarted; the driver checks for the stop request between them.
 StopAtSignals::StopAtSignals(driver::Card& card) {
   g_signal = 0;
   g_card = &card;

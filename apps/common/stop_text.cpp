@@ -17,12 +17,12 @@ constexpr std::uint16_t kMapMinorOfRest = 4;
 
 bool has(std::uint8_t mask, std::size_t n) { return (std::uint32_t{mask} >> n & 1U) != 0; }
 
-// The card's axis n: limits and drives count as the machine's axes do.
+// The name of the card's axis n: limits and drives have the numbers of the machine's axes.
 std::string name_of(const machine::Machine& machine, std::size_t n) {
   return n < machine.axes.size() ? std::string(1, machine.axes[n].letter) : fmt::format("axis {}", n);
 }
 
-// Without a place to move from, the operator has to say that it may be moved.
+// If the place was lost, the operator must confirm that the machine may be moved.
 std::string jog_options(const machine::Machine& machine, const StoppedCard& card) {
   const bool lost = card.place.was_set() && !run::axes_without(machine, card.place.bits.valid).empty();
   return lost ? " --clear-faults --trust-position" : " --clear-faults";
@@ -39,7 +39,7 @@ std::string jog_away(const machine::Machine& machine, const StoppedCard& card, s
   return fmt::format("move it towards {}{}", from_plus ? "minus" : "plus", jog);
 }
 
-// While a limit of X or Y of these is active, no step of either is free.
+// Whether the axis is X or Y of CoreXY: while a limit of either is active, steps of both are barred.
 bool shares_motors(const machine::Machine& machine, std::size_t n) {
   if (machine.kinematics.name != "corexy" || n >= machine.axes.size()) return false;
   return machine.axes[n].letter == 'X' || machine.axes[n].letter == 'Y';
@@ -67,7 +67,8 @@ std::string drive_cure(const machine::Machine& machine, std::size_t n) {
                      name_of(machine, n));
 }
 
-// After an abort in motion come the steps of the ticks taken and the pulses of the shapers: seven and five an axis.
+// Whether the card is still at the recorded stop. After an abort in motion, the steps of the executed ticks and the
+// pulses in the shapers may follow: seven and five per axis.
 bool stands_there(const driver::Rest& rest, const driver::Snapshot& now) {
   const std::int32_t behind = rest.exact() ? 0 : 7 + 5;
   for (std::size_t n = 0; n < now.position.size(); ++n) {
@@ -85,7 +86,7 @@ StoppedCard read_stopped(driver::Card& card) {
   result.clock_hz = id.clock_hz;
   result.axes = id.axes;
   const driver::Snapshot& now = result.place.now;
-  constexpr std::uint32_t kNamed = field::kFaultLimit | field::kFaultDriveFault;  // of cards with LIMIT_STATE
+  constexpr std::uint32_t kNamed = field::kFaultLimit | field::kFaultDriveFault;  // causes that LIMIT_STATE details
   if ((now.faults & kNamed) != 0) result.limits = card.read_limit_state();
   if (id.map_minor < kMapMinorOfRest || now.status.busy || now.status.stopping) return result;
   const driver::Rest rest = card.read_rest();

@@ -1,4 +1,4 @@
-// Where a stop has left a card, and what to do about its fault, for people.
+// The position of a card after a stop, and the remedy for its fault, as text for people.
 #pragma once
 
 #include <cstdint>
@@ -16,26 +16,26 @@ struct StoppedCard {
   run::CardPlace place;
   std::uint32_t clock_hz = 0;
   unsigned axes = 0;
-  driver::LimitState limits;         // of FAULT
-  std::optional<driver::Rest> rest;  // of the last stop, where the card still stands there
+  driver::LimitState limits;         // details of the causes in FAULT
+  std::optional<driver::Rest> rest;  // record of the last stop, if the card is still at that position
 
   std::uint32_t faults() const { return place.now.faults; }
 };
 
-// Of a card that is not on its way to a stop, or that moves. Throws as driver::Card does.
+// Reads the state of a card. `rest` stays empty while the card moves or is still stopping. Throws as driver::Card does.
 StoppedCard read_stopped(driver::Card& card);
 
-// "X 90.0125 Y 0.0000 mm (pulses 7201, 0)"; pulses of the card's axes alone where no machine zero says more.
+// "X 90.0125 Y 0.0000 mm (pulses 7201, 0)"; only pulses of the card's axes if no machine zero was set.
 std::string standing_text(const machine::Machine& machine, const StoppedCard& card);
 
-// How far on the path the last stop was: "in command 3 of the geometry queue, 1234 ticks before its end (exact)".
+// The place on the path of the last stop: "in command 3 of the geometry queue, 1234 ticks before its end (exact)".
 std::string path_text(const driver::Rest& rest, std::uint32_t clock_hz);
 
-// What to do about a fault, a sentence each: which axes to move which way, what to remove, how to clear it. None
-// without a fault.
+// The remedy for a fault, one sentence per action: which axes to move in which direction, what to remove, how to clear
+// the fault. Empty without a fault.
 std::vector<std::string> fault_cures(const machine::Machine& machine, const StoppedCard& card);
 
-// Both, in one line: where the card stands, how far on the path, and what to do.
+// All in one line: the card's position, its place on the path, and the remedy.
 std::string stop_text(const machine::Machine& machine, const StoppedCard& card);
 
 }  // namespace trammel::app

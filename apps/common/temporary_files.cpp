@@ -17,7 +17,7 @@
 namespace trammel::app {
 namespace {
 
-// Names that the signal handler removes: it may call unlink(), but may not touch a container.
+// Names for the signal handler to remove: it may call unlink(), but may not access a container.
 constexpr std::size_t kMaxNames = 256;
 std::array<std::atomic<const char*>, kMaxNames> names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
@@ -48,14 +48,15 @@ void unlink_all() {
   }
 }
 
-// The signal's own action was put back on entry (SA_RESETHAND), so that the parent sees what ended the process.
+// The signal's default action was restored on entry (SA_RESETHAND), so that the parent sees the signal that ended the
+// process.
 extern "C" void remove_all(int signal) {
   unlink_all();
   ::raise(signal);
 }
 
-// The waveform's writer maps its files into memory. A disk without room for them is not an error of a call there: the
-// access fails, with this code.
+// The waveform's writer maps its files into memory. If the disk is full, no call returns an error; the memory access
+// fails with this code.
 extern "C" void end_without_room(int signal, siginfo_t* info, void* /*context*/) {
   unlink_all();
   if (info->si_code != BUS_ADRERR) {
@@ -63,7 +64,7 @@ extern "C" void end_without_room(int signal, siginfo_t* info, void* /*context*/)
     return;
   }
   constexpr std::string_view kMessage = "trammel: error: --trace: no room for the waveform's files (is a disk full?)\n";
-  // Nothing else can be done where this fails.
+  // If this fails, nothing more can be done.
   [[maybe_unused]] const ssize_t count = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
   ::_exit(kExitFailure);
 }
@@ -90,7 +91,7 @@ void remove_temporary_files_on_signals() {
   action.sa_sigaction = end_without_room;
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_SIGINFO;
   ::sigaction(SIGBUS, &action, nullptr);
-  // A file that grows beyond its limit is a write that fails, and is reported as one.
+  // Makes a file that exceeds its size limit a failed write, which is reported.
   ::signal(SIGXFSZ, SIG_IGN);
 }
 
@@ -126,7 +127,7 @@ TemporaryFile::~TemporaryFile() {
 NamelessFile::NamelessFile(const std::filesystem::path& folder)
     : descriptor_(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600)) {
   if (descriptor_ >= 0) return;
-  // Not every file system can do it. On the others the file loses its name at once.
+  // Not every file system supports this. On the others the file is created with a name, which is removed at once.
   const TemporaryFile named(folder);
   descriptor_ = ::fcntl(named.descriptor(), F_DUPFD_CLOEXEC, 0);
   if (descriptor_ < 0) throw std::runtime_error(fmt::format("no new file can be opened: {}", strerror(errno)));

@@ -1,5 +1,6 @@
-// Files that must not outlive the process: removed with their objects, and where Ctrl-C, a hang-up, a termination or a
-// closed pipe ends the process. SIGKILL leaves a file that has a name. Not thread-safe; signals may come at any time.
+// Files that must not outlive the process. They are removed with their objects, and when Ctrl-C, a hang-up, a
+// termination or a closed pipe ends the process. SIGKILL leaves a file that has a name. Not thread-safe; signals may
+// arrive at any time.
 #pragma once
 
 #include <signal.h>
@@ -9,11 +10,11 @@
 
 namespace trammel::app {
 
-// Call once, before the first temporary file. A disk that is full under a mapped file ends the process with a message
-// and kExitFailure. Signals that the parent has the process ignore (nohup) stay ignored.
+// Call once, before the first temporary file. A full disk under a memory-mapped file ends the process with a message
+// and kExitFailure. Signals that the parent has set to ignored (nohup) stay ignored.
 void remove_temporary_files_on_signals();
 
-// While one lives, signals that end the process wait.
+// While an object exists, signals that end the process are deferred.
 class SignalsWait {
  public:
   SignalsWait();
@@ -25,10 +26,10 @@ class SignalsWait {
   sigset_t before_;
 };
 
-// An empty file with a name of its own.
+// An empty file with a unique name.
 class TemporaryFile {
  public:
-  // Made in `folder`. Throws std::runtime_error, which says why, when it cannot be.
+  // Creates the file in `folder`. Throws std::runtime_error with the reason if that fails.
   explicit TemporaryFile(const std::filesystem::path& folder);
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
@@ -40,14 +41,14 @@ class TemporaryFile {
 
  private:
   std::filesystem::path path_;
-  std::string beside_;  // what the waveform's writer keeps beside its file until it closes it
+  std::string beside_;  // the file that the waveform's writer keeps next to its output until it closes that
   int descriptor_ = -1;
 };
 
-// An empty file without a name: it goes with the process, however that ends.
+// An empty file without a name: it disappears with the process, however the process ends.
 class NamelessFile {
  public:
-  // On the file system of `folder`. Throws std::runtime_error, which says why, when it cannot be made.
+  // Creates the file on the file system of `folder`. Throws std::runtime_error with the reason if that fails.
   explicit NamelessFile(const std::filesystem::path& folder);
   ~NamelessFile();
   NamelessFile(const NamelessFile&) = delete;

@@ -12,10 +12,10 @@
 namespace trammel::app {
 namespace {
 
-// A message may name files from outside, and an option for each word of a program.
+// A message may contain untrusted file names, and an option for each word of a program.
 constexpr std::size_t kLongestMessage = 2000;
 
-// Bold, in the colour's number of ECMA-48's SGR.
+// SGR number of the colour in ECMA-48; the text is also bold.
 int number_of(Colour colour) {
   switch (colour) {
     case Colour::kRed:

@@ -1,4 +1,4 @@
-// What is written for eyes: colour where the stream is a terminal that knows it, unless NO_COLOR asks for none.
+// Output for people: coloured if the stream is a terminal with colour support, unless NO_COLOR disables colour.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@ namespace trammel::app {
 
 enum class Colour { kRed, kGreen, kYellow, kCyan };
 
-// Whether a terminal that understands escapes is behind the descriptor (TERM is set and not "dumb").
+// Whether the descriptor is a terminal that understands escape sequences (TERM is set and not "dumb").
 bool has_escapes(int descriptor);
 
-// The text in a colour where the descriptor's stream takes it (no-color.org: a NO_COLOR that is not empty asks for
-// none), else as it is.
+// The text in a colour if the descriptor's stream supports it and NO_COLOR is empty (no-color.org); otherwise
+// unchanged.
 std::string coloured(int descriptor, Colour colour, const std::string& text);
 
-// "trammel: error: ...", one line on standard error, whatever is in the text; the kind ("error", "warning", "note") has
-// its colour.
+// Prints "trammel: error: ..." as one line on standard error, for any content of the text; the kind ("error",
+// "warning", "note") has its colour.
 void tell(const std::string& kind, const std::string& text);
 
 }  // namespace trammel::app

@@ -12,7 +12,7 @@ namespace trammel::app {
 void require_whole_waveform(const std::string& path, const std::string& name) {
   constexpr int kHeader = 0;
   constexpr int kGeometry = 3;
-  constexpr int kHierarchies[] = {4, 6, 7};  // packed in three ways
+  constexpr int kHierarchies[] = {4, 6, 7};  // three compression formats
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
   std::uint64_t at = 0;
@@ -20,7 +20,7 @@ void require_whole_waveform(const std::string& path, const std::string& name) {
   bool hierarchy = false;
   bool sound = in.good();
   while (sound && at < size) {
-    std::array<unsigned char, 9> head{};  // kind; length of what follows the kind, its own 8 bytes among it
+    std::array<unsigned char, 9> head{};  // kind; length of the rest, including its own 8 bytes
     in.seekg(static_cast<std::streamoff>(at));
     in.read(reinterpret_cast<char*>(head.data()), head.size());
     std::uint64_t length = 0;

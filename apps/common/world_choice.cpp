@@ -18,7 +18,7 @@ double world_mm(const world::World& world, std::size_t axis, std::int64_t pulses
   return static_cast<double>(pulses) / world.axis(axis).pulses_a_mm;
 }
 
-// The machine a while later, when no pulse comes any more: it still swings when the card has ended.
+// The machine one second later, without further pulses, because it still oscillates when the card has ended.
 world::World at_rest(world::World world) {
   world.set_watcher(nullptr);
   world.run_to(world.now() + world.clock_hz());

@@ -1,4 +1,4 @@
-// A machine behind the simulated card's pins: the options --world and --world-events.
+// A simulated machine behind the simulated card's pins: the options --world and --world-events.
 #pragma once
 
 #include <cstdint>
@@ -16,22 +16,23 @@
 namespace trammel::app {
 
 struct WorldChoice {
-  std::optional<std::string> file;    // of --world; "default": the built-in one
-  std::optional<std::string> events;  // of --world-events
+  std::optional<std::string> file;    // file of --world; "default": the built-in one
+  std::optional<std::string> events;  // file of --world-events
 
   void add_to(CLI::App& command);
-  // Throws UsageError where a world was chosen: the card is another.
+  // Throws UsageError if a world was given together with an external card.
   void refuse_with(const CardChoice& card) const;
-  // Nothing without --world. Throws UsageError for what cannot be read, and where `inputs` sets one that the world
-  // wires.
+  // Null without --world. Throws UsageError for a file that cannot be read, and if `inputs` sets an input that the
+  // world wires.
   std::unique_ptr<world::World> make(std::uint32_t clock_hz,
                                      const std::vector<simulation::OperatorEvent>& inputs) const;
 };
 
-// The engine in the world; itself where there is none.
+// The engine connected to the world; the engine itself if `world` is null.
 std::unique_ptr<sim::Engine> in_world(world::World* world, std::unique_ptr<sim::Engine> engine);
 
-// Where the carriages stand, what is pressed, and which of them stand elsewhere than the card counts; `between` these.
+// The positions of the carriages, the pressed contacts, and the carriages whose position differs from the card's count;
+// separated by `between`.
 std::string world_text(const world::World& world, const char* between);
 nlohmann::ordered_json world_json(const world::World& world);
 

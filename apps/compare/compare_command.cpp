@@ -26,10 +26,10 @@ namespace {
 namespace interpolation = interpolation;
 namespace measure = measure;
 
-// Lines a second of random lines where none is given: 100,000 clocks a line at 10 MHz, so that the clock's own
-// coarseness does not hide what the methods do.
+// Default velocity for random lines, lines per second: 100,000 clocks per line at 10 MHz, so that the resolution of the
+// clock does not hide the differences between methods.
 constexpr std::uint64_t kRandomVelocity = 100;
-// Hours of work, and 300 MB of sums.
+// Takes hours, and 300 MB for the sums.
 constexpr std::uint64_t kMaxLines = 100'000'000;
 
 struct CompareOptions {
@@ -63,7 +63,7 @@ void check_size(const interpolation::Curve& curve) {
   }
 }
 
-// Every method's measures; fills in the traces, in the same order, for the motor.
+// Measures every method; stores the traces in the same order, for the motor simulation.
 Comparison compare(const CompareOptions& options, std::vector<measure::Trace>& traces) {
   const interpolation::Curve curve = options.curve.curve();
   check_size(curve);
@@ -152,7 +152,7 @@ void add_compare_command(CLI::App& app) {
   command->add_option("--random", options->random, "compare on this number of random lines instead of one curve")
       ->transform(whole_number(1, kMaxLines, "lines"))
       ->type_name("N");
-  // As far as every whole number is a double.
+  // The range in which a double represents every integer.
   command->add_option("--seed", options->seed, "seed of the random lines (default 1)")
       ->transform(whole_number(0, std::uint64_t{1} << 53));
   command

@@ -1,4 +1,4 @@
-// trammel compare: all methods side by side, on one curve or over random lines.
+// `trammel compare`: compares all methods on one curve or on random lines.
 #pragma once
 
 #include "common/command_line.hpp"

@@ -14,10 +14,10 @@ constexpr double kWidth = 1100;
 constexpr double kTop = 40;
 constexpr double kRowHeight = 190;
 constexpr double kMotorHeight = 460;
-// Points of one polyline at most: two panels of ten methods stay below 1 MB.
+// Largest number of points of a polyline: two panels of ten methods stay below 1 MB.
 constexpr std::size_t kMaxPoints = 2000;
 
-// Of each of at most kMaxPoints groups of neighbours, the largest: peaks stay.
+// Keeps the largest point of each group of neighbours, in at most kMaxPoints groups, so that peaks remain.
 std::vector<chart::Point> thinned(const std::vector<chart::Point>& points) {
   const std::size_t group = points.size() / kMaxPoints + 1;
   std::vector<chart::Point> result;
@@ -40,7 +40,7 @@ std::vector<chart::Point> distances(const measure::Trace& trace, const measure::
   return thinned(points);
 }
 
-// The axis with the most pulses; the first of equals. It is the one a motor is shaken by most often.
+// The axis with the most pulses (the first if several have as many). Its motor is excited most often.
 std::size_t busiest_axis(const measure::Trace& trace) {
   std::size_t busiest = 0;
   for (std::size_t a = 1; a < trace.axes(); ++a) {
@@ -58,7 +58,8 @@ std::vector<chart::Point> intervals(const measure::Trace& trace, const measure::
   return thinned(points);
 }
 
-// One row a method: distance over the time of the curve, and the intervals of its busiest axis; all rows at one scale.
+// One row per method: distance over the time of the curve, and the intervals of its busiest axis; all rows have the
+// same scale.
 void add_rows(chart::Figure& figure, const Comparison& comparison, const std::vector<measure::Trace>& traces,
               const measure::IdealCurve& curve) {
   std::vector<chart::Panel> left;
@@ -90,7 +91,7 @@ void add_rows(chart::Figure& figure, const Comparison& comparison, const std::ve
   }
 }
 
-// Ripple over speed; where steps are lost a cross at the foot instead.
+// Ripple over speed; at speeds with lost steps, a cross at the bottom instead.
 chart::Panel motor_panel(const Comparison& comparison) {
   chart::Panel panel{"Simulated motors: rms speed ripple; a cross at the foot: steps lost",
                      {"pulses/s along the path", true},
@@ -102,7 +103,7 @@ chart::Panel motor_panel(const Comparison& comparison) {
       if (!vibration.lost_steps && vibration.rms_ripple > 1e-4) least = std::min(least, 100 * vibration.rms_ripple);
     }
   }
-  // The crosses stand below what is the least of all, a row a method.
+  // The crosses are below the smallest ripple, in one row per method.
   double foot = least / 1.15;
   for (std::size_t m = 0; m < comparison.sweeps.size(); ++m) {
     chart::Series ripple{std::string(interpolation::info(comparison.methods[m].method).name), chart::colour(m), {}};

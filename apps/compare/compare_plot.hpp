@@ -1,4 +1,4 @@
-// The picture of a comparison: how far each method is from the curve along the way, its step intervals, and the
+// The picture of a comparison: each method's distance from the curve along the path, its step intervals, and the
 // vibration of the simulated motors over speed.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace trammel::app {
 
-// `traces` in the order of comparison.methods. An SVG below 5 MB, whatever the curve.
+// `traces`: in the order of comparison.methods. Returns an SVG below 5 MB for every curve.
 std::string comparison_svg(const Comparison& comparison, const std::vector<measure::Trace>& traces,
                            const measure::IdealCurve& curve);
 

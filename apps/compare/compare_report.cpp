@@ -15,12 +15,12 @@ using interpolation::Method;
 using nlohmann::ordered_json;
 
 constexpr std::array<char, measure::kTraceAxes> kAxisNames = {'x', 'y', 'z', 'a'};
-// Every octave of the sweep is a column.
+// One column per octave of the sweep.
 constexpr std::size_t kColumnStride = measure::kSpeedsAnOctave;
 
 std::string_view name_of(Method method) { return interpolation::info(method).name; }
 
-// Text columns: the first to the left, the others to the right, each as wide as its widest cell.
+// A text table: the first column is left-aligned, the others right-aligned, each as wide as its widest cell.
 class Table {
  public:
   explicit Table(std::vector<std::string> head) : rows_{std::move(head)} {}
@@ -47,7 +47,7 @@ class Table {
 std::string decimals(double value) { return fmt::format("{:.3f}", value); }
 std::string percent(double value) { return fmt::format("{:.1f}", 100 * value); }
 
-// What strays farther than rounding and a step explain has left the curve.
+// Names the methods that left the curve: their distance is larger than rounding and a step explain.
 std::string left_curves(const Comparison& comparison) {
   constexpr double kStep = 1.5;
   std::string text;
@@ -108,7 +108,7 @@ std::string evenness_table(const Comparison& comparison) {
       row.push_back(none ? "-" : percent(evenness.largest));
       row.push_back(none ? "-" : percent(evenness.rms));
       row.push_back(method.spectrum[a].empty() ? "-" : percent(line.amplitude));
-      // What is no more than rounding has no frequency.
+      // An amplitude at the level of rounding has no frequency.
       row.push_back(line.amplitude < 1e-9 ? "-" : decimals(line.frequency));
     }
     row.push_back(percent(method.ripple.rms));

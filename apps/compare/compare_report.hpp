@@ -1,4 +1,4 @@
-// What `trammel compare` found, as tables and as JSON. The measures are defined in trammel/model/measure and in
+// The results of `trammel compare`, as tables and as JSON. The measures are defined in trammel/model/measure and in
 // docs/user/compare.md.
 #pragma once
 
@@ -23,7 +23,7 @@ struct Comparison {
   bool is_line = true;
   interpolation::Options options;
   std::vector<measure::MethodMeasures> methods;
-  std::vector<Refusal> refused;  // methods of this kind of curve that cannot do this one
+  std::vector<Refusal> refused;  // methods for this kind of curve that cannot execute this one
   measure::MotorRun motor;
   std::vector<double> speeds;                           // pulses/s
   std::vector<std::vector<measure::Vibration>> sweeps;  // by method, by speed

@@ -65,7 +65,7 @@ std::unique_ptr<transport::Listener> open_listener(const GrblOptions& options) {
   }
 }
 
-// Where a sender connects to, on standard output at once.
+// Prints the address for senders on standard output at once.
 void tell_senders(const transport::Listener& listener) {
   std::string url = listener.url();
   const std::string serial = "serial:";
@@ -85,7 +85,7 @@ void warn_of_network(const GrblOptions& options) {
                               options.listen));
 }
 
-// Until a signal, or with --once until the last client has gone and the machine stands.
+// Serves until a signal arrives; with --once until the last client has disconnected and the machine is at rest.
 void serve_senders(const GrblOptions& options, driver::Card& card, run::AttentiveBus& bus,
                    const machine::Machine& machine) {
   const std::unique_ptr<transport::Listener> listener = open_listener(options);

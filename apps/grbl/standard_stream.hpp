@@ -7,7 +7,7 @@
 
 namespace trammel::app {
 
-// Its end is the end of standard input.
+// The stream ends when standard input ends.
 std::unique_ptr<transport::ByteStream> standard_stream();
 
 }  // namespace trammel::app

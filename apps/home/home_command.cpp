@@ -31,7 +31,7 @@ struct HomeOptions {
   CardChoice card;
 };
 
-// "X", "x" and "XY" name axes; none: all that have a [homing].
+// "X", "x" and "XY" name axes; without words: all axes that have a [homing].
 std::vector<std::size_t> axes_of(const std::vector<std::string>& words, const machine::Machine& machine) {
   std::vector<std::size_t> axes;
   for (const std::string& word : words) {
@@ -53,7 +53,8 @@ std::vector<std::size_t> axes_of(const std::vector<std::string>& words, const ma
   return axes;
 }
 
-// A place that was lost does not matter to an axis that is homed; one in other scales does to those that are not.
+// A lost place does not matter for an axis that is homed; a place in other scales matters for the axes that are not
+// homed.
 void prepare(driver::Card& card, const machine::Machine& machine, const CardChoice& choice) {
   const run::CardPlace place = run::read_card_place(card);
   if (place.was_set() && !run::scales_fit(place, machine)) {

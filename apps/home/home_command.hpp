@@ -1,4 +1,4 @@
-// `trammel home`: axes find their switches, and with them machine zero.
+// `trammel home`: axes find their switches, and machine zero is set from them.
 #pragma once
 
 #include "common/command_line.hpp"

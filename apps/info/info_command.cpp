@@ -37,7 +37,7 @@ std::string engines(std::uint32_t bits) {
   return text;
 }
 
-// A row of the table of units, without blanks at its end.
+// A row of the table of units, without trailing blanks.
 template <typename... Cells>
 std::string row(const Cells&... cells) {
   std::string text = fmt::format("{:18} {:>7} {:>9}  {:>9} {:>5} {:>6}  {}", cells...);

@@ -34,7 +34,7 @@
 namespace trammel::app {
 namespace {
 
-constexpr std::chrono::milliseconds kLook(10);  // at keys and card while an axis moves
+constexpr std::chrono::milliseconds kLook(10);  // polling interval for keys and card while an axis moves
 constexpr std::chrono::milliseconds kIdleLook(50);
 
 struct JogArguments {
@@ -50,7 +50,7 @@ struct Distances {
   unsigned named = 0;  // bit n: axis n of the machine
 };
 
-// "X10": the axis and how far, mm or degrees.
+// Parses "X10": the axis and its distance, mm or degrees.
 void add_word(const std::string& word, const machine::Machine& machine, Distances& distances) {
   const auto wrong = [&](const char* why) { return UsageError(fmt::format("jog: {}: {}", word.substr(0, 40), why)); };
   const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(word.empty() ? ' ' : word.front())));
@@ -71,7 +71,7 @@ gcode::Coordinates distance_of(const std::vector<std::string>& words, const mach
   return distances.by;
 }
 
-// Along the path, so that the slowest of the axes that move decides.
+// Speed along the path: the slowest axis that moves determines it.
 double default_speed(const machine::Machine& machine, const gcode::Coordinates& distance) {
   double speed = 0;
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
@@ -118,7 +118,7 @@ void move_by_keys(driver::Card& card, KeyJog& jog) {
   bool moving = false;
   while (moving || !jog.ended()) {
     show(jog, shown);
-    // The bus sleeps in the time of the card.
+    // The bus sleeps in card time.
     if (moving) card.bus().sleep(kLook);
     const auto bytes = terminal.read(moving ? std::chrono::milliseconds(0) : kIdleLook);
     if (!bytes) jog.keys({{JogKey::Kind::kEnd}}, Clock::now());
@@ -130,10 +130,10 @@ void move_by_keys(driver::Card& card, KeyJog& jog) {
   to_standard_output("\n");
 }
 
-// What the card keeps of its place, with what it did not know yet.
+// Reads the card's place and completes it.
 run::Start begin_at_place(driver::Card& card, const machine::Machine& machine, const CardChoice& choice) {
   const run::CardPlace found = run::read_card_place(card);
-  run::start_at(machine, found, choice.trust_position);  // what is refused leaves the card as it is
+  run::start_at(machine, found, choice.trust_position);  // a refusal leaves the card unchanged
   take_over(card, choice, machine);
   const run::CardPlace now = run::read_card_place(card);
   const run::Start start = run::start_at(machine, now, choice.trust_position);
@@ -145,7 +145,7 @@ run::Start begin_at_place(driver::Card& card, const machine::Machine& machine, c
   return start;
 }
 
-// A jog that goes further into a limit is a mistake, where the card knows its side.
+// Refuses a jog further into an active limit, if the card knows its side.
 void check_way(const machine::Machine& machine, const gcode::Coordinates& by, const driver::ActiveRoles& active) {
   for (std::size_t n = 0; n < machine.axes.size(); ++n) {
     const bool minus = (active.limit_minus >> n & 1U) != 0;
@@ -156,10 +156,10 @@ void check_way(const machine::Machine& machine, const gcode::Coordinates& by, co
   }
 }
 
-// The card's roles are set.
+// Requires that the card's roles are set.
 void override_limits(driver::Card& card, const machine::Machine& machine, const JogArguments& options) {
   if (!options.override_limits) return;
-  constexpr std::uint64_t kSettled = 256;  // clocks in which roles follow their inputs, and more
+  constexpr std::uint64_t kSettled = 256;  // clocks: longer than roles take to follow their inputs
   card.bus().sleep(driver::time_of(kSettled, card.identification().clock_hz));
   const driver::ActiveRoles active = card.read_roles();
   check_way(machine, distance_of(options.words, machine), active);
@@ -171,7 +171,7 @@ void override_limits(driver::Card& card, const machine::Machine& machine, const 
 void jog_on(driver::Card& card, const JogArguments& options) {
   const machine::Machine file = options.machine.load();
   require_axes(card, file);
-  distance_of(options.words, file);  // what cannot be is refused first
+  distance_of(options.words, file);  // impossible distances are refused first
   const run::Start start = begin_at_place(card, file, options.card);
   const machine::Machine& machine = start.machine;
   override_limits(card, machine, options);

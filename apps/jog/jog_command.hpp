@@ -4,7 +4,7 @@
 
 namespace trammel::app {
 
-// Registers `trammel jog`: moves axes of a card outside by hand, by a distance or by the keys of a terminal.
+// Registers `trammel jog`: moves axes of an external card by hand, by a distance or with the keys of a terminal.
 void add_jog_command(CLI::App& app);
 
 }  // namespace trammel::app

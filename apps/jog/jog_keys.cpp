@@ -10,7 +10,7 @@ struct Sequence {
   JogKey key;
 };
 
-// Of ECMA-48 and of xterm: arrows in both cursor modes, page up, page down.
+// Escape sequences of ECMA-48 and xterm: arrows in both cursor modes, page up, page down.
 const Sequence kSequences[] = {{"\x1b[A", move(1, 1)},  {"\x1bOA", move(1, 1)},  {"\x1b[B", move(1, -1)},
                                {"\x1bOB", move(1, -1)}, {"\x1b[C", move(0, 1)},  {"\x1bOC", move(0, 1)},
                                {"\x1b[D", move(0, -1)}, {"\x1bOD", move(0, -1)}, {"\x1b[5~", move(2, 1)},
@@ -36,7 +36,7 @@ JogKey key_of(char byte) {
   }
 }
 
-// How many bytes an escape sequence has, to its final byte or to the end.
+// Length of an escape sequence, to its final byte or to the end of the text.
 std::size_t length_of(std::string_view bytes) {
   if (bytes.size() < 2) return bytes.size();
   if (bytes[1] == 'O') return bytes.size() < 3 ? bytes.size() : 3;

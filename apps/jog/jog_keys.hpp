@@ -1,4 +1,4 @@
-// What a terminal's keys ask for, and how long a key counts as held.
+// The meaning of a terminal's keys, and the time for which a key counts as held.
 #pragma once
 
 #include <chrono>
@@ -8,25 +8,25 @@
 
 namespace trammel::app {
 
-// One key. `axis` and `sign` are of kMove, `number` of kStep and kSpeed.
+// One key. `axis` and `sign` belong to kMove, `number` to kStep and kSpeed.
 struct JogKey {
   enum class Kind { kMove, kStep, kFaster, kSlower, kStop, kEnd, kOther };
   Kind kind = Kind::kOther;
-  std::size_t axis = 0;  // of the machine, by its place in the machine file
+  std::size_t axis = 0;  // axis of the machine, by its position in the machine file
   int sign = 0;
-  unsigned number = 0;  // of a digit
+  unsigned number = 0;  // value of the digit
 
   bool operator==(const JogKey& other) const {
     return kind == other.kind && axis == other.axis && sign == other.sign && number == other.number;
   }
 };
 
-// The keys of a terminal's bytes: arrows (axes 0 and 1), page up and down (axis 2), [ and ] (axis 3), digits, + and -,
-// the space bar, q. A sequence of escape that is cut is taken for what it is so far; what is unknown is kOther.
+// Converts a terminal's bytes to keys: arrows (axes 0 and 1), page up and down (axis 2), [ and ] (axis 3), digits, +
+// and -, the space bar, q. An incomplete escape sequence is interpreted as it is; an unknown one is kOther.
 std::vector<JogKey> jog_keys(std::string_view bytes);
 
-// A terminal tells that a key is pressed and repeats it, never that it is released. So a key counts as held until its
-// first repeat is due, and from then on for a shorter time after each repeat. Times are the caller's.
+// A terminal reports that a key is pressed and repeats it, but not that it is released. Therefore a key counts as held
+// until its first repeat is due, and then for a shorter time after each repeat. The caller supplies the times.
 class DeadMan {
  public:
   using Time = std::chrono::steady_clock::time_point;

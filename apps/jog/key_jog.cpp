@@ -38,14 +38,14 @@ void KeyJog::key(const JogKey& key, DeadMan::Time now) {
       ended_ = true;
       return stop();
     case JogKey::Kind::kStop:
-    case JogKey::Kind::kOther:  // whoever hits a wrong key wants no motion
+    case JogKey::Kind::kOther:  // a wrong key stops the motion, because no motion was intended
       return stop();
   }
 }
 
 void KeyJog::move(const JogKey& key, DeadMan::Time now) {
   if (moving_) {
-    // A key that comes while another one's motion is under way ends it: two directions at once are a mistake.
+    // Another key during a motion ends the motion: two directions at once are a mistake.
     if (!(*moving_ == key)) return stop();
     return dead_man_.repeat(now);
   }

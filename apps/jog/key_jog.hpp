@@ -1,4 +1,4 @@
-// Axes moved by the keys of a terminal: by a step for each key, or for as long as a key is held.
+// Moves axes with the keys of a terminal: by a step per key, or for as long as a key is held.
 #pragma once
 
 #include <chrono>
@@ -13,26 +13,28 @@
 
 namespace trammel::app {
 
-// What the keys of one look at the terminal do. The card is configured, and nobody else moves it. Not thread-safe.
+// Executes the keys from one reading of the terminal. The card is configured, and nothing else moves it. Not
+// thread-safe.
 class KeyJog {
  public:
-  // At most `speed`, mm/s (degrees/s), of each axis; none: a quarter of the axis's max_velocity.
+  // `speed`: limit of each axis in mm/s (degrees/s); none: a quarter of the axis's max_velocity.
   KeyJog(driver::Card& card, const machine::Machine& machine, run::MachinePosition& position,
          std::optional<double> speed)
       : machine_(machine), position_(position), jog_(card, machine, position), speed_(speed) {}
 
-  // Throws what run::Jog does, but for a motion that is refused: note() says why.
+  // Throws as run::Jog does, except for a motion that is refused: note() gives the reason.
   void keys(const std::vector<JogKey>& keys, DeadMan::Time now);
-  // Between two looks at the keys. Whether an axis moves. A held key that is released ends its motion on a ramp.
+  // Call between two readings of the keys. Returns whether an axis moves. When a held key is released, its motion ends
+  // on a ramp.
   bool look(DeadMan::Time now);
-  // A ramp to a stop; look() tells when it has ended.
+  // Starts a ramp to a stop; look() returns false when it has ended.
   void stop();
 
-  // The key for the end has come.
+  // Whether the key for the end was pressed.
   bool ended() const { return ended_; }
-  // Place, step and speed, for one line of a terminal.
+  // Position, step and speed, in one line for a terminal.
   std::string line() const;
-  // Why the last key did nothing; empty when it did.
+  // The reason why the last key had no effect; empty if it had one.
   const std::string& note() const { return note_; }
 
  private:
@@ -44,11 +46,11 @@ class KeyJog {
   run::MachinePosition& position_;
   run::Jog jog_;
   std::optional<double> speed_;
-  double share_ = 1;   // of the speed
+  double share_ = 1;   // fraction of the speed
   unsigned step_ = 3;  // 0: for as long as the key is held
   DeadMan dead_man_;
-  std::optional<JogKey> moving_;  // by which key
-  bool while_held_ = false;       // that motion, whatever the step is now
+  std::optional<JogKey> moving_;  // the key that started the current motion
+  bool while_held_ = false;       // the current motion lasts while its key is held, even if the step has changed
   bool stopping_ = false;
   bool ended_ = false;
   std::string note_;

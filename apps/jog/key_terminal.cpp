@@ -25,7 +25,7 @@ KeyTerminal::~KeyTerminal() { ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_); }
 
 std::optional<std::string> KeyTerminal::read(std::chrono::milliseconds longest) const {
   pollfd input{STDIN_FILENO, POLLIN, 0};
-  // A signal ends the wait: the caller looks at what it asks for.
+  // A signal ends the wait, so that the caller can handle it.
   if (::poll(&input, 1, static_cast<int>(longest.count())) <= 0) return std::string();
   std::array<char, 256> bytes{};
   const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());

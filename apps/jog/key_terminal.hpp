@@ -1,4 +1,4 @@
-// The terminal at standard input, giving each key at once and showing none.
+// The terminal at standard input, set to return each key at once without echo.
 #pragma once
 
 #include <termios.h>
@@ -9,16 +9,18 @@
 
 namespace trammel::app {
 
-// As long as one lives; then the terminal is as it was before. Signals of keys (Ctrl-C, Ctrl-Z) stay as they are.
+// The setting lasts for the lifetime of the object; then the terminal is as before. Signal keys (Ctrl-C, Ctrl-Z) keep
+// their effect.
 class KeyTerminal {
  public:
-  // Throws std::system_error where standard input is no terminal.
+  // Throws std::system_error if standard input is not a terminal.
   KeyTerminal();
   ~KeyTerminal();
   KeyTerminal(const KeyTerminal&) = delete;
   KeyTerminal& operator=(const KeyTerminal&) = delete;
 
-  // The bytes that have come, waiting for the first at most so long; empty when none has. None: the terminal is gone.
+  // The received bytes. Waits for the first one for at most `longest`; empty if there is none. None: the terminal is
+  // disconnected.
   std::optional<std::string> read(std::chrono::milliseconds longest) const;
 
  private:

@@ -66,7 +66,7 @@ std::vector<std::int64_t> displacement_of(const LineArguments& options) {
   return result;
 }
 
-// Without ramps.
+// Duration without ramps.
 double seconds_of(const LineArguments& options, const std::vector<std::int64_t>& displacement) {
   if (options.velocity) return 1 / *options.velocity;
   if (options.duration) return *options.duration;
@@ -90,9 +90,9 @@ driver::LineLimits line_limits(const LineArguments& options) {
   return limits;
 }
 
-// What was measured on the card.
+// Measurements on the card.
 struct Result {
-  std::vector<std::int64_t> pulses;  // asked for
+  std::vector<std::int64_t> pulses;  // requested pulses
   std::vector<std::int64_t> final;
   std::vector<std::uint64_t> steps;
   std::uint64_t line_clocks = 0;
@@ -104,7 +104,7 @@ struct Result {
   std::uint64_t comparisons = 0;
   double largest_line_deviation = 0;
   double largest_arc_deviation = 0;
-  run::Plot plot;  // filled when asked for
+  run::Plot plot;  // filled if requested
 };
 
 run::Point point_of(const std::vector<std::int64_t>& pulses, double share) {
@@ -115,7 +115,7 @@ run::Point point_of(const std::vector<std::int64_t>& pulses, double share) {
   return point;
 }
 
-// The line from its start at (0,0), in pulses, and the beginning of it at most as long as the recorder magnifies.
+// The line from its start at (0,0), in pulses, and its first part, as long as the recorder magnifies.
 run::Plot plot_of(const std::vector<std::int64_t>& pulses, const run::StepRecorder& recorder) {
   double longest = 1;
   for (const std::int64_t p : pulses) longest = std::max(longest, std::fabs(static_cast<double>(p)));
@@ -143,7 +143,7 @@ driver::OneShotPlan plan_of(const LineArguments& options, const driver::CardTimi
   }
 }
 
-// The path of direct mode has no command; the recorder measures it as one line over its clocks.
+// A direct-mode path has no command; the recorder measures it as one line over its clocks.
 driver::LineCommand as_command(const driver::OneShotPlan& plan, const std::vector<std::int64_t>& pulses) {
   driver::LineCommand line;
   line.ticks = plan.part(0).length;
@@ -155,7 +155,7 @@ driver::LineCommand as_command(const driver::OneShotPlan& plan, const std::vecto
   return line;
 }
 
-// Pulses that the card has made since `before`, by axis of the line.
+// Pulses made by the card since `before`, by axis of the line.
 std::vector<std::int64_t> moved(driver::Card& card, const driver::Snapshot& before, std::size_t axes) {
   const driver::Snapshot after = card.read_snapshot();
   std::vector<std::int64_t> result;
@@ -165,14 +165,14 @@ std::vector<std::int64_t> moved(driver::Card& card, const driver::Snapshot& befo
   return result;
 }
 
-// What a line is made of, however it is made.
+// The result of making a line, in either way.
 struct Made {
   std::uint64_t line_clocks = 0;
   std::size_t parts = 0;
   bool slowed = false;
 };
 
-// To the end, or to where a signal stops it, from `before` on. `recorder`: nullptr where no pin is seen.
+// Runs the line from `before` to its end, or to a stop by a signal. `recorder`: nullptr if no pin is visible.
 Made one_shot_line(driver::Card& card, const LineArguments& options, const driver::Snapshot& before,
                    run::StepRecorder* recorder) {
   const std::vector<std::int64_t> pulses = displacement_of(options);
@@ -187,7 +187,7 @@ Made one_shot_line(driver::Card& card, const LineArguments& options, const drive
   return {plan.clocks(), plan.size(), plan.slowed()};
 }
 
-// Likewise, with the machine's ramps.
+// Does the same with the machine's ramps.
 Made line_with_ramps(driver::Card& card, const LineArguments& options, const driver::Snapshot& before,
                      run::StepRecorder* recorder) {
   const std::vector<std::int64_t> pulses = displacement_of(options);
@@ -212,7 +212,7 @@ Made any_line(driver::Card& card, const LineArguments& options, const driver::Sn
                          : line_with_ramps(card, options, before, recorder);
 }
 
-// On a card outside, which stops by itself where this program dies or is stopped.
+// Runs a line on an external card, which stops by itself if this program dies or is stopped.
 Made watched_line(driver::Card& card, const LineArguments& options, const driver::Snapshot& before) {
   const machine::Machine machine = options.machine.load();
   const MotionWatchdog watchdog(card, machine.motion);
@@ -277,7 +277,7 @@ nlohmann::ordered_json json_of(const Result& result) {
   json["clock_hz"] = result.clock_hz;
   json["lockstep_cycles"] = nullptr;
   if (result.lockstep_cycles) json["lockstep_cycles"] = *result.lockstep_cycles;
-  json["mismatches"] = 0;  // one would have ended the run
+  json["mismatches"] = 0;  // a mismatch would have ended the run
   json["max_deviation"] = {{"line", result.largest_line_deviation}, {"arc", result.largest_arc_deviation}};
   return json;
 }
@@ -295,7 +295,7 @@ std::string summary(const Result& result) {
   return text;
 }
 
-// What a card outside says of the line that it has made.
+// The result of a line on an external card, from its registers.
 struct CardResult {
   std::vector<std::int64_t> moved;
   std::uint64_t line_clocks = 0;
@@ -316,7 +316,7 @@ CardResult make_line_on(driver::Card& card, const LineArguments& options) {
   if (pulses.size() > card.identification().axes) {
     throw UsageError(fmt::format("--to: the card has {} axes", card.identification().axes));
   }
-  if (options.no_ramp) plan_of(options, card.timing(), pulses);  // what cannot be is refused first
+  if (options.no_ramp) plan_of(options, card.timing(), pulses);  // impossible lines are refused first
   const std::uint8_t moved_axes = axes_of(pulses);
   const machine::Machine machine = options.machine.load();
   const run::CardPlace found = run::read_card_place(card);
@@ -375,7 +375,8 @@ void line_on_card(const LineArguments& options, const transport::CardUrl& url) {
                              result.slowed ? ", slowed to keep a limit" : "", url.text, fmt::join(result.moved, ", ")));
 }
 
-// The machine's limits hold for a line with ramps, and slow it down; a line without knows no machine.
+// Refuses options of the other kind of line. The machine's limits apply to a line with ramps, and slow it down; a line
+// without ramps does not use the machine.
 void refuse_other_line(const LineArguments& options) {
   const auto refuse = [](const char* option, bool given, const char* why) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
@@ -395,7 +396,7 @@ void line_in_simulation(const LineArguments& options) {
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
   Output* const plot = outputs.add("--plot", options.plot);
   outputs.check();
-  // A card of 4 or of 8 axes, so that the results do not depend on whether it is traced.
+  // Uses a card of 4 or 8 axes even without a trace, so that tracing does not change the results.
   const auto axes = simulation::traced_axes(static_cast<unsigned>(displacement_of(options).size()));
   sim::SimulationOptions engine = options.engine.options(axes, kDefaultClock, kDefaultClock);
   outputs.open();

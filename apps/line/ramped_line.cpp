@@ -18,7 +18,7 @@ machine::Machine in_pulses(const machine::Machine& machine, std::size_t motors) 
         "--to: the machine has {} motors. Give a machine file with more (--machine), or --no-ramp, which needs none",
         machine.motors()));
   }
-  // In the card's order; a rotary letter only where the others do not suffice.
+  // In the card's order; a rotary letter is used only if the others do not suffice.
   const std::string_view letters = motors < card_map::kMaxAxes ? "XYZUVWE" : "XYZAUVWE";
   const kinematics::Kinematics kinematics(machine);
   machine::Machine result = machine;
@@ -49,7 +49,7 @@ machine::Machine in_pulses(const machine::Machine& machine, std::size_t motors) 
 
 run::ProgramLines ramped_line(const machine::Machine& machine, const std::vector<std::int64_t>& pulses,
                               double seconds) {
-  constexpr double kLongest = 60'000;  // what G93 takes
+  constexpr double kLongest = 60'000;  // limit of G93
   if (std::all_of(pulses.begin(), pulses.end(), [](std::int64_t p) { return p == 0; })) {
     throw UsageError("line: no axis moves");
   }

@@ -10,12 +10,12 @@
 
 namespace trammel::app {
 
-// The machine's first `motors` motors as axes of their own whose unit is a pulse, without soft limits, offsets, outputs
-// and tools. Throws UsageError where it has fewer.
+// A machine made of the first `motors` motors, each as an axis whose unit is a pulse, without soft limits, offsets,
+// outputs and tools. Throws UsageError if the machine has fewer motors.
 machine::Machine in_pulses(const machine::Machine& machine, std::size_t motors);
 
-// `machine`: in_pulses(). The line by `pulses` from where the card stands, in `seconds` without its ramps. Throws
-// UsageError where nothing moves, and for more than 1,000 minutes.
+// A program with the line by `pulses` from the card's present position, in `seconds` without its ramps. `machine`: the
+// result of in_pulses(). Throws UsageError if nothing moves, and for more than 1,000 minutes.
 run::ProgramLines ramped_line(const machine::Machine& machine, const std::vector<std::int64_t>& pulses, double seconds);
 
 }  // namespace trammel::app

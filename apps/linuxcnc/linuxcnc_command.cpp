@@ -127,7 +127,7 @@ void add_linuxcnc_command(CLI::App& app) {
       ->add_option("--record", options->record,
                    "write each period as it was sent, and each step of a simulated card, to a CSV file")
       ->type_name("FILE");
-  options->local.engine = "model";  // the Verilated card does not keep up with a kilohertz
+  options->local.engine = "model";  // the Verilated card is too slow for one kilohertz
   options->local.add_to(*command);
   options->machine.add_to(*command);
   options->card.add_to_mover(*command);

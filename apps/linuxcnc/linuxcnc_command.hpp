@@ -1,4 +1,4 @@
-// trammel linuxcnc: owns a card for LinuxCNC's realtime modules.
+// `trammel linuxcnc`: owns a card for LinuxCNC's realtime modules.
 #pragma once
 
 #include "common/command_line.hpp"

@@ -1,5 +1,5 @@
-// What was commanded and what was made, for comparisons: the lines sent to the card, and every step of a simulated one.
-// Thread-safe: the card's thread tells of steps, another one of lines.
+// Records commanded and executed motion for comparisons: the lines sent to the card, and every step of a simulated
+// card. Thread-safe: the card's thread reports steps, another thread reports lines.
 #pragma once
 
 #include <mutex>
@@ -14,14 +14,14 @@ class MotionRecord final : public linuxcnc::ServoRecord, public driver::StepSink
  public:
   explicit MotionRecord(unsigned joints) : joints_(joints) {}
 
-  // CSV, in order of what it was told:
+  // CSV, in the order of the reports:
   //   open,CLOCK,POSITION...            pulses from machine zero
   //   line,NUMBER,TIME,DURATION,TARGET...
-  //                                     of the period; ns, when LinuxCNC's thread began it; ns; 2^-24 pulses from
-  //                                     machine zero
+  //                                     NUMBER of the period; TIME when LinuxCNC's thread began it, ns; DURATION, ns;
+  //                                     TARGET, 2^-24 pulses from machine zero
   //   close,CLOCK
-  //   output,CLOCK,LEVELS               of all outputs, bit n: output n
-  //   step,CLOCK,COMMAND,AXIS,DIRECTION on the path, before its shaper; COMMAND counts what the stream sent, from 0
+  //   output,CLOCK,LEVELS               levels of all outputs, bit n: output n
+  //   step,CLOCK,COMMAND,AXIS,DIRECTION path step, before the shaper; COMMAND counts the stream's commands from 0
   std::string text() const;
 
   void opened(std::uint64_t clock, const std::array<std::int64_t, card_map::kMaxAxes>& positions) override;

@@ -11,7 +11,7 @@
 namespace trammel::app {
 namespace {
 
-// Seconds: a process that was stopped for longer finds its card as it was so long after the stop.
+// Seconds: after a longer stop of the process, the card simulates only this time.
 constexpr std::uint64_t kLongestCatchUp = 2;
 
 sim::SimulationOptions paced_engine(const LocalCardChoice& choice, unsigned axes) {

@@ -1,7 +1,7 @@
-// A simulated card of this process that keeps to the host's time, in the caller's thread: before each access, and in
-// each sleep, its clocks run up to now. Cheaper than a served card, whose every transfer is a round trip between
-// threads: a kilohertz leaves no time for these. A process that was stopped finds the card as a real one would be by
-// then.
+// A simulated card of this process that follows the host's time in the caller's thread: before each access, and in each
+// sleep, its clocks run up to the present time. This is cheaper than a served card, where every transfer is a round
+// trip between threads, for which there is no time at one kilohertz. If the process was stopped for at most 2 s, the
+// card then has the state of a real one at the present time.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace trammel::app {
 
 class PacedCard final : public driver::Bus, private driver::StepSink {
  public:
-  // `also`, where there is one, is told all steps, and must outlive it. Throws UsageError for a world that cannot be
+  // `also`, if given, receives all steps, and must outlive this object. Throws UsageError for a world that cannot be
   // read.
   PacedCard(const LocalCardChoice& choice, unsigned axes, driver::StepSink* also);
   ~PacedCard() override;
@@ -27,7 +27,7 @@ class PacedCard final : public driver::Bus, private driver::StepSink {
   void sleep(std::chrono::nanoseconds time) override;
   bool reports_refusals() const override { return engine_->reports_refusals(); }
 
-  // How many steps it has made on the path, and a number for their order.
+  // The number of path steps, and a hash of their order.
   std::string text() const;
 
  private:
@@ -43,7 +43,7 @@ class PacedCard final : public driver::Bus, private driver::StepSink {
   std::uint32_t clock_hz_;
   bool fast_;
   std::chrono::steady_clock::time_point begun_;
-  std::uint64_t skipped_ = 0;  // clocks that the host had no time for
+  std::uint64_t skipped_ = 0;  // clocks that the host had no time to simulate
 };
 
 }  // namespace trammel::app

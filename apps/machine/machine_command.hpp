@@ -10,7 +10,8 @@ namespace trammel::app {
 // Registers `trammel machine`.
 void add_machine_command(CLI::App& app);
 
-// What `trammel machine --check` prints: for each axis the ways that stops take, and how limit switches stop.
+// The output of `trammel machine --check`: the stopping distances of each axis, and how limit switches stop the
+// machine.
 std::string stop_text(const machine::Machine& machine);
 
 }  // namespace trammel::app

@@ -47,7 +47,7 @@ std::string axis_text(const Machine& machine, std::size_t n, const StopWay& way)
   return text + soft_text(machine, axis, way);
 }
 
-// The card has one reaction for all limits, so the axes that do not fit decide.
+// The card has one reaction for all limits, so the axes without enough overtravel determine it.
 std::string limits_text(const Machine& machine, const std::vector<StopWay>& ways) {
   bool any = false;
   std::string short_ones;

@@ -1,4 +1,4 @@
-// trammel methods: the interpolators and what each can do.
+// `trammel methods`: lists the interpolators and their abilities.
 #pragma once
 
 #include "common/command_line.hpp"

@@ -75,7 +75,7 @@ std::unique_ptr<panel::PanelServer> open_panel(const panel::ServerSettings& addr
   }
 }
 
-// Until a signal.
+// Serves until a signal arrives.
 void serve_page(const PanelOptions& options, driver::Card& card, run::AttentiveBus& bus,
                 const machine::Machine& machine) {
   const panel::ServerSettings address = panel_address(options);

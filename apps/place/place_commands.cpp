@@ -25,8 +25,8 @@ namespace {
 struct PlaceOptions {
   CardChoice card;
   MachineChoice machine;
-  std::vector<std::string> axes;  // zero
-  bool homed = false;             // zero
+  std::vector<std::string> axes;  // for zero
+  bool homed = false;             // for zero
 };
 
 transport::CardUrl card_of(const PlaceOptions& options, const char* command) {
@@ -35,12 +35,12 @@ transport::CardUrl card_of(const PlaceOptions& options, const char* command) {
       fmt::format("{}: needs --card, because a card that this command simulates has no position yet", command));
 }
 
-// A line for each axis: where it stands, and what the card knows of that.
+// A line for each axis: its position, and whether that is valid, homed, and kept through immediate stops.
 std::string table(const machine::Machine& machine, const run::CardPlace& place) {
   const gcode::Coordinates at = run::standing_at(machine, place);
   const std::string lost = run::axes_without(machine, place.bits.valid);
   const std::string not_homed = run::axes_without(machine, place.bits.homed);
-  // Any motor that may lose the axis's place makes the axis one that may.
+  // An axis keeps its place only if all of its motors do.
   const std::string not_kept = run::axes_without(machine, place.keeps);
   std::string text;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -64,7 +64,7 @@ std::string place_text(const machine::Machine& machine, const run::CardPlace& pl
   return run::scales_fit(place, machine) ? table(machine, place) : kOtherScales;
 }
 
-// Where the numbers are those of one moment.
+// A note for a card that moves: the printed numbers are those of one moment.
 const char* motion_text(const driver::Status& status) {
   if (!status.busy) return "";
   return status.held ? "the card holds in a motion\n" : "the card moves\n";
@@ -99,8 +99,8 @@ void zero(const PlaceOptions& options) {
   });
 }
 
-// Why the card stands, or that it moves. A server holds an idle card, too, when a client has ended: that stopped
-// nothing.
+// The cause of the card's stop, or that it moves. A server also holds an idle card when a client has disconnected; that
+// did not stop anything.
 std::string cause_of(driver::Card& card, const driver::Status& status) {
   if (status.faulted) return "by " + card.read_fault_text();
   if (status.busy && card.parts().time_base.hold()) {
@@ -112,14 +112,14 @@ std::string cause_of(driver::Card& card, const driver::Status& status) {
   return status.busy ? "by nothing: the card moves" : "by no fault";
 }
 
-// What the user does about a fault, a line each.
+// The user's actions for a fault, one line each.
 std::string cures_of_a_fault(const machine::Machine& machine, const StoppedCard& stopped) {
   std::string text;
   for (const std::string& cure : fault_cures(machine, stopped)) text += fmt::format("next     {}\n", cure);
   return text;
 }
 
-// What the user does about the rest, a line each.
+// The user's other actions, one line each.
 std::string cures_of_the_rest(const machine::Machine& machine, const run::CardPlace& place) {
   const driver::Status& status = place.now.status;
   std::string text;
@@ -139,7 +139,7 @@ std::string cures_of_the_rest(const machine::Machine& machine, const run::CardPl
   return free ? "next     run a program: it begins here\n" : text;
 }
 
-// Of a run that was interrupted on this card.
+// How to resume a run that was interrupted on this card.
 std::string how_to_resume(const CardChoice& card) {
   try {
     const std::optional<ResumeRecord> record = card.resume().read();

@@ -1,4 +1,4 @@
-// `trammel position`, `zero` and `recover`: the machine's place, which a card outside keeps.
+// `trammel position`, `zero` and `recover`: the machine's place, which an external card keeps.
 #pragma once
 
 #include "common/command_line.hpp"

@@ -1,4 +1,4 @@
-// Zeng, Zhang & Huang, (9) to (24): the error's bound over random lines, and what becomes of it with integer dividers.
+// Zeng, Zhang & Huang, (9) to (24): the error's bound over random lines, and its failure with integer dividers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace {
 using namespace interpolation;
 
 constexpr int kLines = 1'000'000;
-constexpr std::int64_t kWindow = 250;  // pulses in x to a point of the picture
+constexpr std::int64_t kWindow = 250;  // pulses in x per point of the picture
 
 struct Bounds {
-  std::int64_t over = 0;  // positions at a distance of one pulse or more along the shorter axis
+  std::int64_t over = 0;  // positions at least one pulse away along the shorter axis
   std::int64_t wrong_end = 0;
   std::int64_t proved = 0;  // lines in the octant of the paper's proof
   std::int64_t positions = 0;
@@ -31,7 +31,7 @@ void take(Bounds& bounds, const Line& line, std::uint64_t clocks) {
   const std::int64_t longer = std::max(std::abs(dx), std::abs(dy));
   if (longer == 0) return;
   bounds.proved += dy > dx && dx > 0;
-  // f = `clocks` and v = 1: a line of that many clocks.
+  // With f = `clocks` and v = 1 a line takes that many clocks.
   PulseTrainLine<2> walk(line, one_shot_timing({clocks, 1, 1}, PulseTiming::Kind::kAccumulatorHalf));
   std::int64_t largest = 0;
   while (!walk.done()) {
@@ -65,7 +65,7 @@ void random_lines(Page& page, const Progress& progress) {
             fmt::format("{} random lines in all octants, {} positions: {} at 1 pulse or more, the largest {:.4f}",
                         kLines, bounds.positions, bounds.over, bounds.along),
             bounds.over == 0 && bounds.along > 0.95);
-  // sqrt(2) / 2: either axis is at most half a pulse off its place.
+  // sqrt(2) / 2: each axis is at most half a pulse from its ideal position.
   page.added(
       "The proof's octant", "(11): y_e - y_s > x_e - x_s > 0 alone",
       fmt::format(
@@ -121,7 +121,8 @@ void dividers(Page& page) {
       for (std::size_t a = 0; a < 2; ++a) {
         if (step.direction[a] != 0) ends[a] = walk.time();
       }
-      // 120 of 30,000 pulses, each the largest of its neighbours: every 250th would show the zigzag of its own choice.
+      // Each point is the largest of its window, 120 points for 30,000 pulses: picking every 250th pulse would show an
+      // aliased zigzag.
       window = std::max(window, d);
       const std::int64_t x = walk.position()[0];
       if (x < window_end) return;
@@ -129,7 +130,7 @@ void dividers(Page& page) {
       window = 0;
       window_end = x + kWindow;
     });
-    // The pulses behind the last whole window, y's alone where x ends with it.
+    // The pulses after the last whole window, or those of y only if x ends with the window.
     if (stray.points.back()[0] < static_cast<double>(c.x)) stray.points.push_back({static_cast<double>(c.x), 0});
     stray.points.back()[1] = std::max(stray.points.back()[1], window);
     const double accumulators = stray_of_accumulators(line, options);

@@ -1,4 +1,4 @@
-// Lines 1 to 8 and the line of Figure 4 on the Verilated card, in direct mode at 10 MHz: what the hardware does.
+// Lines 1 to 8 and the line of Figure 4 on the Verilated card, in direct mode at 10 MHz: the behaviour of the hardware.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,14 +22,14 @@ driver::CardTiming paper_card() {
   driver::CardTiming timing;
   timing.clock_hz = 10'000'000;
   timing.axes = 2;
-  // A clock of pulse and one of space.
+  // One clock of pulse and one of space.
   timing.pulse_period.fill(2);
   return timing;
 }
 
 namespace {
 
-constexpr unsigned kFractionBits = 40;  // of the card's frequencies
+constexpr unsigned kFractionBits = 40;  // fraction bits of the card's frequencies
 
 class Steps final : public driver::StepSink {
  public:
@@ -44,8 +44,8 @@ struct CardRun {
   driver::OneShotPart part;
   std::array<std::vector<std::uint64_t>, 2> falling;  // clocks of x's and y's falling edges at the pins
   std::vector<std::int64_t> counters;                 // the card's positions at the end
-  std::uint64_t clocks = 0;                           // in lockstep with the golden model
-  std::uint64_t line_cycles = 0;                      // from the start until the card was found idle
+  std::uint64_t clocks = 0;                           // clocks in lockstep with the golden model
+  std::uint64_t line_cycles = 0;                      // clocks from the start until the card was found idle
 };
 
 driver::Displacement displacement_of(const Line& line) {
@@ -54,7 +54,7 @@ driver::Displacement displacement_of(const Line& line) {
   return displacement;
 }
 
-// Waits clock by clock and notes when the STEP pins fall.
+// Waits clock by clock and records the falling edges of the STEP pins.
 void watch_pins(sim::Engine& engine, std::uint64_t clocks, CardRun& run) {
   std::uint32_t before = engine.step_pins();
   for (std::uint64_t i = 0; i < clocks; ++i) {
@@ -67,8 +67,8 @@ void watch_pins(sim::Engine& engine, std::uint64_t clocks, CardRun& run) {
   }
 }
 
-// Runs a line of 2,000 clocks; with `hold`, the time base is ramped to a stop in the middle of it and up again.
-// `step_lengths`: of x and y, clocks; the shortest without them.
+// Runs a line of 2,000 clocks; with `hold`, the time base ramps to a stop in the middle and up again. `step_lengths`:
+// of x and y, clocks; by default the shortest.
 CardRun run_on_card(const Line& line, bool hold, const std::array<double, 2>& step_lengths = {}) {
   sim::SimulationOptions options;
   options.kind = sim::EngineKind::kRtl;
@@ -93,7 +93,7 @@ CardRun run_on_card(const Line& line, bool hold, const std::array<double, 2>& st
     engine->wait(3000);
     card.set_hold(false);
   }
-  // The last pulse, as long as half of its interval, ends after the line.
+  // The last pulse, which lasts half of its interval, ends after the line.
   watch_pins(*engine, kPaperClocks + kPaperClocks / 4, run);
   card.wait_until_idle(std::chrono::milliseconds(10));
   run.line_cycles = engine->cycles() - before;
@@ -104,7 +104,7 @@ CardRun run_on_card(const Line& line, bool hold, const std::array<double, 2>& st
   return run;
 }
 
-// The path from its steps, at the ticks of the path: an enabled clock each.
+// The track from the path steps, in ticks of the path, which are enabled clocks.
 Track track_of_card(const Line& line, const CardRun& run) {
   Track track{{0, line.start}};
   for (const driver::PathStep& step : run.steps.path) {
@@ -118,7 +118,7 @@ Track track_of_card(const Line& line, const CardRun& run) {
   return track;
 }
 
-// The pulses at the pins, in clocks from the first clock of the line, given its first tick's clock.
+// Clocks of the pulses at the pins of an axis.
 std::vector<double> pin_times(const CardRun& run, unsigned axis) {
   std::vector<double> times;
   for (const driver::PinStep& step : run.steps.pins) {
@@ -127,7 +127,8 @@ std::vector<double> pin_times(const CardRun& run, unsigned axis) {
   return times;
 }
 
-// floor(1/2 + k * frequency / 2^40), the card's formula, in every clock k of the line, those without a step included.
+// Whether the track follows the card's formula, floor(1/2 + k * frequency / 2^40), in every clock k of the line,
+// including those without a step.
 bool follows_formula(const Line& line, const CardRun& run, const Track& track) {
   auto next = track.begin();
   Position at = line.start;
@@ -135,7 +136,7 @@ bool follows_formula(const Line& line, const CardRun& run, const Track& track) {
     if (next != track.end() && next->time == clock) at = (next++)->position;
     for (std::size_t a = 0; a < 2; ++a) {
       const std::uint64_t half = std::uint64_t{1} << (kFractionBits - 1);
-      // 2,000 clocks of at most one pulse: below 2^52.
+      // At most one pulse in each of 2,000 clocks: below 2^52.
       const std::uint64_t made = (half + clock * run.part.frequency[a]) >> kFractionBits;
       if (static_cast<std::uint64_t>(std::abs(at[a] - line.start[a])) != made) return false;
     }
@@ -143,7 +144,7 @@ bool follows_formula(const Line& line, const CardRun& run, const Track& track) {
   return next == track.end();
 }
 
-// The largest difference of the clocks at which an axis makes the same pulse on the card and in exact arithmetic.
+// The largest difference between the clocks of the same pulse on the card and in exact arithmetic.
 double largest_lag(const Track& card, const Track& exact) {
   double lag = 0;
   for (std::size_t a = 0; a < 2; ++a) {
@@ -169,15 +170,15 @@ struct Totals {
   unsigned ends = 0;
   unsigned formula = 0;
   unsigned bound = 0;
-  unsigned equal = 0;  // errors, to three decimals, to those of exact arithmetic
+  unsigned equal = 0;  // lines whose errors equal those of exact arithmetic to three decimals
   double lag = 0;
-  double interval_difference = 0;  // of the pulses at the pins, without each axis's first interval
-  double forward_first = 0;        // how much shorter an axis's first interval is than its next ones
-  double backward_first = 0;       // the same where the axis starts in the negative direction
+  double interval_difference = 0;  // at the pins, without each axis's first interval
+  double forward_first = 0;        // by how much an axis's first interval is shorter than the next ones
+  double backward_first = 0;       // the same if the axis starts in the negative direction
   std::uint64_t clocks = 0;
 };
 
-// What the lines add up to.
+// Totals over the lines.
 struct LinesOnCard {
   Totals totals;
   Csv track{"line,tick,x,y,distance"};
@@ -233,8 +234,8 @@ void judge_lines(Page& page, const LinesOnCard& sums) {
                         "exact arithmetic to three decimals",
                         totals.bound, totals.equal),
             totals.bound == 8 && totals.equal == 8);
-  // After reset DIR says forward, and the shaper turns it round before an axis's first pulse backward: a few clocks, at
-  // the pin alone.
+  // After reset DIR is forward, and the shaper reverses it before an axis's first backward pulse. This takes a few
+  // clocks and is visible only at the pin.
   page.corrected("Velocities on the card", "both velocities stay the same",
                  fmt::format("intervals at a pin differ by at most {:g} clock after an axis's first one; the first is "
                              "up to {:g} clocks shorter on an axis that starts backward, because its first pulse waits "
@@ -246,7 +247,7 @@ void judge_lines(Page& page, const LinesOnCard& sums) {
             totals.clocks > 16'000);
 }
 
-// Figure 2 (b) on a card: a line over v_max reaches neither bus nor pins; entered again with a smaller v it runs.
+// Figure 2 (b) on a card: a line above v_max reaches neither bus nor pins; entered again with a smaller v it runs.
 bool refuses_then_runs() {
   sim::SimulationOptions options;
   options.kind = sim::EngineKind::kRtl;
@@ -300,10 +301,10 @@ void lines_on_card(Page& page, const Progress& progress) {
   page.data("one-shot-card-pins", "Leading edges at the STEP pins, clocks from each line's first", sums.pins);
 }
 
-// Clocks of 100 ns, half of the intervals of x and y on the line of Figure 4: the step lengths that are set.
+// Clocks of 100 ns: half of the intervals of x and y on the line of Figure 4, used as step lengths.
 constexpr std::array<double, 2> kHalfIntervals{100, 50};
 
-// How long the pulses of an axis are high: from each edge up to the edge down that follows it.
+// Durations of an axis's pulses: from each rising edge to the next falling edge.
 Spread high_times(const std::vector<double>& rising, const std::vector<double>& falling) {
   if (rising.empty() || rising.size() != falling.size()) return {};
   Spread high{falling[0] - rising[0], 0};

@@ -1,4 +1,4 @@
-// Zeng, Zhang & Huang: the errors of Lines 1 to 8, Figures 3 and 5, the velocity limit, and what the error means.
+// Zeng, Zhang & Huang: the errors of Lines 1 to 8, Figures 3 and 5, the velocity limit, and the meaning of the error.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -115,7 +115,7 @@ void figure_five(Page& page) {
                         driver::one_shot_words(paper_card().axes)),
             operations == 60 && plan.size() == 1);
   Csv csv("line,point_by_point,one_shot");
-  std::vector<chart::Point> operations_of_line;  // the operation's number over the pulses before it
+  std::vector<chart::Point> operations_of_line;  // number of operations over the number of earlier pulses
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
     const std::uint64_t count = make_interpolator(Method::kPointByPoint, kPaperLines[i].line()).total_time();
     csv.row("{},{},1", i + 1, count);
@@ -131,7 +131,7 @@ void figure_five(Page& page) {
       csv);
 }
 
-// A line of more pulses than a part can hold: the parts' ends, and when the line would be there.
+// A line with more pulses than a part can hold: the end points of the parts, and the ideal times there.
 void split_line(Page& page) {
   const std::int64_t far = std::int64_t{1} << 34;
   const Line line = make_line({0, 0}, {far, far / 3});
@@ -150,7 +150,8 @@ void split_line(Page& page) {
     const double due = static_cast<double>(duration) * static_cast<double>(at[0]) / static_cast<double>(far);
     late = std::max(late, std::fabs(static_cast<double>(clocks) - due));
   }
-  // A pulse is 256 clocks here: a part that ends within half a pulse of its place is as early or late as that.
+  // A pulse takes 256 clocks here, so a part that ends within half a pulse of its ideal point is early or late by up to
+  // half of that.
   page.pass("A line too long", "is divided into small lines",
             fmt::format(
                 "2^34 pulses go out in {} lines: their ends lie within {:.2f} pulses of the line and {:.0f} clocks of "
@@ -205,7 +206,7 @@ void error_meant(Page& page) {
       smaller);
 }
 
-// Steps of Line 1 in which both axes pulse, and all of its steps.
+// The number of steps of Line 1 in which both axes pulse, and of all its steps.
 std::pair<unsigned, unsigned> steps_of_both(Method method) {
   std::pair<unsigned, unsigned> steps;
   make_interpolator(method, kPaperLines[0].line()).run([&](const Step& step, const auto&) {
@@ -227,7 +228,7 @@ void one_pulse_each_time(Page& page) {
                      deviation.first == 20 && deviation.second == 40);
 }
 
-// The bounds of the three.
+// The bounds of the three rival methods.
 void rival_bounds(Page& page) {
   std::mt19937_64 random(4);
   struct Rival {
@@ -238,7 +239,7 @@ void rival_bounds(Page& page) {
   for (int i = 0; i < 2000; ++i) {
     const Line line = make_line({0, 0}, {uniform(random, -200, 200), uniform(random, -200, 200)});
     if (longest_axis(line) == 0) continue;
-    // Along the axis in which the line is steepest: what the paper bounds.
+    // Distance along the axis in which the line is steepest, as bounded in the paper.
     const double along = std::hypot(static_cast<double>(line.end[0]), static_cast<double>(line.end[1])) /
                          static_cast<double>(longest_axis(line));
     for (Rival& rival : rivals) {
@@ -281,12 +282,12 @@ void rivals(Page& page) {
   rival_bounds(page);
 }
 
-constexpr std::int64_t kVelocity = 5000;     // v of the paper's lines, lines a second
+constexpr std::int64_t kVelocity = 5000;     // v of the paper's lines, lines per second
 constexpr std::int64_t kClock = 10'000'000;  // f, Hz
 
-// Whether a frequency of the driver, 2^-40 pulses a clock, is |velocity| pulses a second, rounded.
+// Whether a frequency of the driver, in 2^-40 pulses per clock, is |velocity| pulses per second, rounded.
 bool rounds_to(std::uint64_t frequency, std::int64_t velocity) {
-  // Both sides below 2^58: at most 200,000 pulses/s.
+  // Both terms are below 2^58 for at most 200,000 pulses/s.
   const std::int64_t off = static_cast<std::int64_t>(frequency) * kClock - (std::abs(velocity) << 40);
   return 2 * std::abs(off) <= kClock;
 }
@@ -298,7 +299,7 @@ void formulas(Page& page) {
       {"line", "k (1)", "v_x (6)", "v_y (5)", "p_x (8)", "p_y (7)", "FREQUENCY x", "FREQUENCY y"}};
   unsigned on_line = 0;
   unsigned negative = 0;
-  double stray = 0;  // of the ends that the frequencies lead to, pulses
+  double stray = 0;  // error of the end points given by the frequencies, pulses
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
     const Line line = kPaperLines[i].line();
     const std::array<std::int64_t, 2> p{line.end[0] - line.start[0], line.end[1] - line.start[1]};
@@ -341,7 +342,7 @@ void unit_of_v(Page& page) {
   for (const PaperLine& line : kPaperLines) {
     equal += make_interpolator(Method::kOneShot, line.line()).total_time() == kPaperClocks;
   }
-  // y of Line 1: 40 pulses.
+  // The y axis of Line 1: 40 pulses.
   const Spread interval = spread_of(pulse_times(track_of(Method::kOneShot, kPaperLines[0].line()), 1, 1));
   const double rate = static_cast<double>(kClock) / interval.largest;
   page.corrected("Unit of v", "v in pulses a second",

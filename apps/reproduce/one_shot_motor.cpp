@@ -1,4 +1,4 @@
-// Zeng, Zhang & Huang: the claim that the motor vibrates less, put to a simulated two-phase stepper.
+// Zeng, Zhang & Huang: the claim that the motor vibrates less, tested with a simulated two-phase stepper.
 #include <fmt/format.h>
 
 #include <array>
@@ -37,7 +37,7 @@ struct Comparison {
 
 constexpr std::array<const char*, 2> kNames{"point by point", "one-shot"};
 
-// Ripple over speed; where steps are lost a cross at the foot instead.
+// Ripple over speed; at speeds with lost steps, a cross at the bottom instead.
 chart::Panel ripple_panel(const Comparison& found) {
   chart::Panel panel{"Rms speed ripple of the motors", {"pulses/s along the path", true}, {"% of the speed", true}, {}};
   panel.y.low = 0.1;
@@ -73,7 +73,7 @@ void write_speeds(Page& page, const Comparison& found) {
   std::vector<std::vector<std::string>> rows{{"pulses/s", kNames[0], kNames[1]}};
   for (std::size_t s = 0; s < found.speeds.size(); ++s) {
     for (std::size_t m = 0; m < kNames.size(); ++m) {
-      // What is left of a lost run says nothing; two digits do not depend on the mathematics library.
+      // The ripple of a run with lost steps is meaningless. Two digits do not depend on the mathematics library.
       csv.row("{:g},{},{},{:d}", found.speeds[s], m == 0 ? "point-by-point" : "one-shot",
               found.lost(m, s) ? "" : fmt::format("{:.2g}", found.ripple(m, s)), found.lost(m, s));
     }
@@ -101,7 +101,7 @@ void one_shot_motor(Page& page, const Progress& progress) {
       "of 50 ms, so that a loss is not that of an abrupt start or stop; definitions and all methods in "
       "[trammel compare](../user/compare.md).");
   write_speeds(page, found);
-  unsigned better = 0;  // of the speeds from 800 pulses/s on
+  unsigned better = 0;  // among the speeds from 800 pulses/s on
   unsigned worse_below = 0;
   unsigned above = 0;
   unsigned below = 0;

@@ -1,4 +1,5 @@
-// Zeng, Zhang & Huang, Figure 4: the pulses of both methods on the line (0,0) to (10,20), and how even they are.
+// Zeng, Zhang & Huang, Figure 4: the pulses of both methods on the line (0,0) to (10,20), and the evenness of their
+// intervals.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ Spread spread_of(const std::vector<double>& times) {
 
 namespace {
 
-// `high`: how long a pulse of x and of y is drawn, clocks; 0 draws its moment alone.
+// `high`: duration of a drawn pulse of x and of y, clocks; 0 draws only its instant.
 void add_pulses(Csv& csv, chart::Panel& panel, const char* method, const Track& track, double period, double end,
                 const std::array<double, 2>& high) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -47,10 +48,10 @@ void add_pulses(Csv& csv, chart::Panel& panel, const char* method, const Track& 
   }
 }
 
-// Over all axes of Lines 1 to 8: the largest difference of two intervals of one axis.
+// Over all axes of Lines 1 to 8: the largest difference between two intervals of one axis.
 struct Unevenness {
-  double units = 0;     // of the method's time
-  double relative = 0;  // in the axis's mean interval
+  double units = 0;     // in units of the method's time
+  double relative = 0;  // relative to the axis's mean interval
 };
 
 Unevenness unevenness(Method method) {
@@ -76,15 +77,15 @@ void one_shot_waves(Page& page, const Progress& progress) {
   const Line line = make_line({0, 0}, {10, 20});
   const Track one_shot = track_of(Method::kOneShot, line);
   const Track by_point = track_of(Method::kPointByPoint, line);
-  // A step every 100 clocks: y's pulse interval in the one-shot line, the equal velocity of the paper.
+  // A step every 100 clocks, the pulse interval of y in the one-shot line: the equal velocity of the paper.
   constexpr double kPeriod = 100;
   const double end = kPeriod * static_cast<double>(by_point.size() - 1);
   Csv csv("method,axis,pulse,clock");
   std::vector<chart::Panel> panels(2);
   panels[0] = wave_panel("(a) one-shot", end);
   panels[1] = wave_panel("(b) point by point", end);
-  // The paper's duty ratio, 50 %, of intervals of 200 and 100 clocks. The rule of point by point says when a pulse
-  // comes, not how long it is.
+  // The paper's duty ratio is 50 %, of intervals of 200 and 100 clocks. The point-by-point rule determines the time of
+  // a pulse, not its duration.
   add_pulses(csv, panels[0], "one-shot", one_shot, 1, end, {100, 50});
   add_pulses(csv, panels[1], "point-by-point", by_point, kPeriod, end, {0, 0});
   const Spread x = spread_of(pulse_times(one_shot, 0, 1));

@@ -1,6 +1,5 @@
-// The pages that `trammel reproduce` writes: text, items with their verdicts, tables, pictures with the CSV behind
-// them. Nothing in them changes from run to run. Errors: std::runtime_error when a file cannot be written. Not
-// thread-safe.
+// The pages that `trammel reproduce` writes: text, items with their verdicts, tables, and pictures with their CSV data.
+// Their content is the same in every run. Throws std::runtime_error if a file cannot be written. Not thread-safe.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,16 +12,16 @@
 namespace trammel::app::reproduce {
 
 enum class Verdict {
-  kPass,       // as the paper has it
-  kCorrected,  // the paper is wrong here; what is right was found
-  kAdded,      // the paper is silent here; what it leaves open was found
-  kOpen,       // a claim of the paper that is not put to a test here
-  kFail,       // not what was expected
+  kPass,       // the paper's result was reproduced
+  kCorrected,  // the paper is wrong here; the correct result was found
+  kAdded,      // the paper does not cover this; a result was found
+  kOpen,       // a claim of the paper that is not tested here
+  kFail,       // the result differs from the expected one
 };
 
 struct Item {
   std::string what;
-  std::string paper;  // what the paper prints or says
+  std::string paper;  // what the paper prints or claims
   std::string found;
   Verdict verdict;
 };
@@ -43,12 +42,12 @@ class Csv {
   std::string text_;
 };
 
-// In lines of at most 120 columns, but for words longer than that; `text` is one paragraph.
+// Wraps one paragraph at 120 columns; longer words stay whole.
 std::string wrapped(const std::string& text);
 
 class Page {
  public:
-  // The page `file`, with pictures and CSV files in folders beside it.
+  // The page `file`; its pictures and CSV files are in folders next to it.
   Page(std::string file, std::string title);
 
   void heading(const std::string& text);
@@ -59,18 +58,18 @@ class Page {
   // A CSV without a picture of its own.
   void data(const std::string& name, const std::string& caption, const Csv& csv);
 
-  // The paper's own result, found again when `holds`.
+  // Adds a result of the paper, reproduced if `holds`.
   void pass(const std::string& what, const std::string& paper, const std::string& found, bool holds);
-  // A place where the paper is wrong; `found` is right when `holds`.
+  // Adds an error of the paper; `found` is correct if `holds`.
   void corrected(const std::string& what, const std::string& paper, const std::string& found, bool holds);
 
-  // What the paper does not say; `found` is right when `holds`.
+  // Adds a result that the paper lacks; `found` is correct if `holds`.
   void added(const std::string& what, const std::string& paper, const std::string& found, bool holds);
 
-  // A claim that is not tested here, and why.
+  // Adds a claim that is not tested here, with the reason.
   void open(const std::string& what, const std::string& paper, const std::string& reason);
 
-  // The page, its pictures and its data, by their names beside each other.
+  // Content by file name: the page, its pictures and its data.
   std::map<std::string, std::string> files() const;
 
   const std::vector<Item>& items() const { return items_; }

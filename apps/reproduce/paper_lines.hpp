@@ -1,4 +1,4 @@
-// The second paper's Lines 1 to 8, and what is known of them. Units: pulses.
+// The second paper's Lines 1 to 8, and known results for them. Units: pulses.
 #pragma once
 
 #include <array>
@@ -9,12 +9,13 @@
 
 namespace trammel::interpolation {
 
-// At 10 MHz and 5,000 lines a second.
+// Clocks per line at 10 MHz and 5,000 lines per second.
 inline constexpr std::uint64_t kPaperClocks = 2000;
 
 struct PaperLine {
   std::int64_t start_x, start_y, end_x, end_y;
-  // Largest perpendicular distances by exact arithmetic, kPaperClocks a line, to three decimals; of kPaperMethods.
+  // Largest perpendicular distances by exact arithmetic, with kPaperClocks clocks per line, to three decimals; in the
+  // order of kPaperMethods.
   std::array<double, 4> errors;
   std::uint64_t steer_steps;
 

@@ -1,4 +1,4 @@
-// What the chapters' pictures share.
+// Functions shared by the chapters' pictures.
 #include <cmath>
 #include <utility>
 

@@ -33,7 +33,7 @@ struct Chapter {
   const char* name;
   std::size_t page;
   void (*make)(Page&, const Progress&);
-  double share;  // of the time of all
+  double share;  // fraction of the total time
 };
 
 constexpr std::array<Chapter, 10> kChapters{{{"STEER's tables", 0, reproduce::steer_tables, 0.01},
@@ -75,7 +75,7 @@ std::string entry_page(const std::vector<Page>& pages) {
   return text;
 }
 
-// Nothing is made before all is computed, but what cannot be made is refused before.
+// Files are written only after all computations, but an unusable folder is refused before them.
 void check_folder(const std::string& name) {
   std::filesystem::path folder = std::filesystem::absolute(name);
   std::error_code error;

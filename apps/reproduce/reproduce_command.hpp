@@ -1,4 +1,4 @@
-// trammel reproduce: every table and figure of both papers made again.
+// `trammel reproduce`: reproduces every table and figure of both papers.
 #pragma once
 
 #include "common/command_line.hpp"

@@ -1,4 +1,4 @@
-// Goldberg & Goldberg: what becomes of full circles, of starts off the circle, of arcs and of ellipses; Figure 1.
+// Goldberg & Goldberg: results for full circles, starts off the circle, arcs and ellipses; Figure 1.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -99,7 +99,7 @@ void large_circle(Page& page) {
             walk.back() && steps == 8000 && largest <= 1);
 }
 
-// A circle cannot be walked along its tangent by steps of x and y: "always perpendicular" is the intention.
+// Steps of x and y cannot follow the tangent of a circle; "always perpendicular" is the intention.
 void tangent(Page& page) {
   constexpr std::int64_t kRadius = 1000;
   SteerProgram walk({kRadius, 0}, kRadius, false);
@@ -124,7 +124,7 @@ void tangent(Page& page) {
       perpendicular < 10 && largest > 80 && walk.back());
 }
 
-// All circles of radius 1, by start and direction; and radius 0.
+// All circles of radius 1, by start and direction; and the circle of radius 0.
 void smallest_circles(Page& page) {
   constexpr std::array<Point, 4> kStarts{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
   std::string hanging;
@@ -173,7 +173,8 @@ void starts_off(Page& page) {
     if (!steps) ++never;
     if (steps) csv.row("{},{},{},{:d},{}", r, start.x, start.y, clockwise, *steps);
   }
-  // The share depends on how starts are drawn; the other count's are not stated, so only "nearly all" is asserted.
+  // The fraction depends on the distribution of the starts. That of the earlier count is not stated, so the check only
+  // requires "nearly all".
   page.added("Start off the circle", "no word on it; the program takes any",
              fmt::format("{} of 2,000 random starts never return (1,974 of 2,000 in an earlier count with other "
                          "starts): STEER hangs; a radius that does not fit the start cannot be given here",
@@ -182,7 +183,7 @@ void starts_off(Page& page) {
   page.data("steer-starts-off", "The starts that do return", csv);
 }
 
-// Whether a walk by `Rule` alone meets the end within a turn and a half.
+// Whether a walk by `Rule` without the exact-end rule meets the end within a turn and a half.
 template <class Rule>
 bool meets(const Point& start, const Point& end, bool clockwise) {
   Point at = start;
@@ -224,8 +225,9 @@ void arcs(Page& page, const Progress& progress) {
   }
   const double four = 100.0 * missed_four / kArcs;
   const double eight = 100.0 * missed_eight / kArcs;
-  // The shares depend on how arcs are drawn, and on the 8-direction rule; those of the other count are not stated. So
-  // only this is asserted: that a good part of the ends is missed without the exact-end rule, and none with it.
+  // The fractions depend on the distribution of the arcs and on the 8-direction rule; those of the other count are not
+  // stated. So the check only requires that a considerable part of the ends is missed without the exact-end rule, and
+  // none with it.
   page.added("Arcs", "full circles only",
              fmt::format("of {} random arcs with a correctly rounded end (radius 10 to 300), a walk by the rule "
                          "alone misses {:.1f} % in 4 directions (sign of F) and {:.1f} % in 8 (minimum deviation); "
@@ -235,13 +237,13 @@ void arcs(Page& page, const Progress& progress) {
              four > 5 && eight > 5 && missed_here == 0);
 }
 
-// The distance of a point from the ellipse x^2 / a^2 + y^2 / b^2 = 1, a > b > 0. Its foot is (a^2 x / (t + a^2),
-// b^2 y / (t + b^2)) for the largest t that puts it on the curve.
+// The distance of a point from the ellipse x^2 / a^2 + y^2 / b^2 = 1, a > b > 0. The nearest point of the ellipse is
+// (a^2 x / (t + a^2), b^2 y / (t + b^2)) for the largest t for which this point is on the curve.
 double ellipse_distance(const Position& p, double a, double b) {
   const double x = std::fabs(static_cast<double>(p[0]));
   const double y = std::fabs(static_cast<double>(p[1]));
   if (y == 0 && x * a >= a * a - b * b) return std::fabs(x - a);
-  double low = b * y - b * b;  // there the second square alone is 1
+  double low = b * y - b * b;  // at this t the second square alone is 1
   double high = std::hypot(a * x, b * y);
   for (int i = 0; i < 100; ++i) {
     const double t = (low + high) / 2;
@@ -282,8 +284,8 @@ void ellipse(Page& page) {
                chart::grid_of({plane("Semi-axes 60 and 25", series)}, 1, 680, 380), csv);
 }
 
-// The largest distance from a circle of `radius` of points R cos and R sin, both functions rounded to `bits` fraction
-// bits, the points to whole pulses; as many points as STEER makes steps.
+// The largest distance from a circle of `radius` of the points (R cos, R sin), with both functions rounded to `bits`
+// fraction bits and the points rounded to whole pulses; the number of points is the number of STEER's steps.
 double parametric_error(std::int64_t radius, int bits) {
   const double unit = std::ldexp(1.0, bits);
   double largest = 0;

@@ -1,4 +1,4 @@
-// Goldberg & Goldberg: the delay and its ramp, and what a gradient of zero does to lines.
+// Goldberg & Goldberg: the delay and its ramp, and the effect of a zero gradient on lines.
 #include "trammel/interpolation/steer_program.hpp"
 
 #include <fmt/format.h>
@@ -14,11 +14,11 @@ namespace {
 
 using namespace interpolation;
 
-// The listing's loop `while (++i != (feedrate + drag) / 30)`, i an int of 16 bits from 0 and drag 0: how often it
-// compares.
+// The number of comparisons in the listing's loop `while (++i != (feedrate + drag) / 30)`, where i is an int of 16 bits
+// that starts at 0, and drag is 0.
 unsigned loop_passes(int feedrate) {
   unsigned passes = 0;
-  std::uint16_t i = 0;  // that compiler's int wraps; today's must not
+  std::uint16_t i = 0;  // the paper's compiler wraps an int; signed overflow is undefined today
   do {
     ++i;
     ++passes;
@@ -72,7 +72,8 @@ void delay_list(Page& page) {
       first == 10 && second == 10);
 }
 
-// A line walked by Table 2, F = -dy x + dx y with the gradient (-dy, dx), clockwise: that goes along (dx, dy).
+// Whether Table 2 reaches the end of a line, with F = -dy x + dx y and the gradient (-dy, dx), clockwise: the walk
+// follows (dx, dy).
 bool table_two_meets(std::int64_t dx, std::int64_t dy) {
   Point at{0, 0};
   for (std::int64_t step = 0; step < 4 * (std::abs(dx) + std::abs(dy)); ++step) {

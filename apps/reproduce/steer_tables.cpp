@@ -16,7 +16,7 @@ long long whole(Deviation value) { return static_cast<long long>(value); }
 
 void table_one(Page& page) {
   page.heading("Table 1: the line from (0,0) to (3,-7)");
-  // F and the axis of every row as printed.
+  // F and the axis of every row, as printed.
   constexpr std::array<int, 10> kF{-4, -1, 2, -5, -2, 1, -6, -3, 0, 3};
   const std::string axes = "yyxyyxyyyx";
   const Line line = make_line({0, 0}, {3, -7});
@@ -77,7 +77,7 @@ void table_two(Page& page) {
     const int x = step.direction[0];
     const int y = step.direction[1];
     if (x == kPrinted[row][0] && y == kPrinted[row][1]) ++equal;
-    // The radius (sign_x, sign_y) turned by the step: positive is counter-clockwise.
+    // The rotation of the radius (sign_x, sign_y) by the step: positive is counter-clockwise.
     const int turn = sign_x * y - sign_y * x;
     const bool outward = sign_x * x + sign_y * y > 0;
     if (!d && turn > 0) ++counter_clockwise_at_zero;
@@ -119,8 +119,8 @@ void table_three(Page& page) {
   SteerProgram walk({25, 0}, 25, false);
   Csv csv("step,x,y,f,dx,dy,x_step,y_step");
   chart::Series path = walk_series("STEER");
-  unsigned equal = 0;  // of the 25 x 12 numbers before the last row
-  std::string differ;  // columns of the last row
+  unsigned equal = 0;  // equal numbers among the 25 x 12 before the last row
+  std::string differ;  // differing columns of the last row
   Point last;
   std::uint64_t steps = 0;
   do {

@@ -1,4 +1,4 @@
-// What both papers say in words alone: of notation, of other methods, of numbers that a formula gets.
+// Claims of both papers in words only: about notation, other methods, and numbers that a formula gives.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace {
 
 using namespace interpolation;
 
-// A program as the host's reader takes it.
+// A program as read by the host's reader.
 struct GcodeText {
-  unsigned lines = 0;  // motions of each kind
+  unsigned lines = 0;  // number of line motions
   unsigned arcs = 0;
   bool refused = false;
   gcode::Coordinates end{};
@@ -58,9 +58,9 @@ void notation(Page& page) {
 
 // "The average velocities of point by point comparison method were hard to control."
 void average_velocity(Page& page) {
-  double least = 1;  // pulses along the line to a step
+  double least = 1;  // pulses along the line per step
   double largest = 0;
-  double off = 0;  // of one-shot lines from the path speed asked for, clocks
+  double off = 0;  // deviation of one-shot lines from the requested path speed, clocks
   constexpr std::uint64_t kSpeed = 200'000;
   for (const PaperLine& each : kPaperLines) {
     const Line line = each.line();
@@ -79,11 +79,11 @@ void average_velocity(Page& page) {
             least < 0.72 && largest == 1 && off < 1);
 }
 
-// "There were no errors in the calculation": of the products. What the generators get is a quotient.
+// "There were no errors in the calculation": true for the products. The generators get a quotient.
 void no_errors(Page& page) {
   unsigned axes = 0;
-  unsigned frequencies = 0;  // no whole number of 2^-40 pulses a clock
-  unsigned periods = 0;      // no whole number of clocks
+  unsigned frequencies = 0;  // frequencies that are not an integer number of 2^-40 pulses per clock
+  unsigned periods = 0;      // periods that are not an integer number of clocks
   bool rounded = true;
   for (const PaperLine& each : kPaperLines) {
     const Line line = each.line();
@@ -93,7 +93,7 @@ void no_errors(Page& page) {
       if (p[a] == 0) continue;
       ++axes;
       const auto pulses = static_cast<std::uint64_t>(std::abs(p[a]));
-      const std::uint64_t wanted = pulses << 40U;  // of frequency times clocks
+      const std::uint64_t wanted = pulses << 40U;  // required frequency times clocks
       const std::uint64_t given = part.frequency[a] * kPaperClocks;
       frequencies += given != wanted;
       rounded = rounded && 2 * (given > wanted ? given - wanted : wanted - given) <= kPaperClocks;
@@ -122,8 +122,8 @@ void references(Page& page) {
       eight.size() < four.size() && largest_distance(line, eight) < largest_distance(line, four));
 }
 
-// (13) to (20) at every clock of Line 1, in pulses: round() against the exact displacements. (15) and (16) are (13) and
-// (14) with y = k x put in; (17) and (18) are those divided by k.
+// (13) to (20) at every clock of Line 1, in pulses: round() compared with the exact displacements. (15) and (16) are
+// (13) and (14) with y = k x inserted; (17) and (18) are those divided by k.
 void numbering(Page& page) {
   const Line line = kPaperLines[0].line();
   const Track track = track_of(Method::kOneShot, line);

@@ -25,7 +25,7 @@
 namespace trammel::app {
 namespace {
 
-// Shows how far the run is, and lets it go on after a connection that was lost and made anew.
+// Shows the progress of a run, and continues it after a connection was lost and restored.
 class CardWatch final : public run::Observer {
  public:
   CardWatch(driver::Card& card, const transport::Connection& connection, const run::Runner& runner,
@@ -36,7 +36,7 @@ class CardWatch final : public run::Observer {
     if (connection_.reconnections() != reconnections_) {
       reconnections_ = connection_.reconnections();
       tell("note", "the connection was lost and made again; the motion continues");
-      // The run's own hold is not the server's: it ends that with its first piece that moves, on a ramp.
+      // The run's own hold is not the server's: the run ends it, with its first piece that moves, on a ramp.
       if (!runner_.begins()) card_.request_hold(false);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
@@ -61,7 +61,7 @@ void set_overrides(driver::Card& card, const CardRunOptions& options) {
   card.set_override(driver::PieceClass::kFixed, 100, options.max_percent);
 }
 
-// Pulses from machine zero on, by axis of the card.
+// Present position in pulses relative to machine zero, by axis of the card.
 planner::Pulses standing_pulses(const machine::Machine& machine, const run::CardPlace& place) {
   planner::Pulses pulses{};
   if (!place.was_set()) return pulses;
@@ -71,7 +71,7 @@ planner::Pulses standing_pulses(const machine::Machine& machine, const run::Card
   return pulses;
 }
 
-// Where the program's first line begins.
+// Start of the program's first line.
 gcode::Coordinates start_of(const machine::Machine& machine, const ResumeRecord& record) {
   planner::Pulses pulses{};
   std::copy_n(record.start.begin(), std::min(record.start.size(), pulses.size()), pulses.begin());
@@ -93,7 +93,7 @@ ResumeRecord interrupted_run(driver::Card& card, const CardRunOptions& options) 
   return *record;
 }
 
-// The run that goes on, with the place of the stop.
+// The run to be continued, with the place of its stop.
 ResumeRecord resumed_run(driver::Card& card, const machine::Machine& machine, const run::CardPlace& found,
                          const CardRunOptions& options) {
   interrupted_run(card, options);
@@ -111,7 +111,7 @@ void check_plan(const ResumeRecord& record, const run::Plan& plan) {
       "--resume: not the run that was interrupted: this planner, or this card, makes other commands from the program");
 }
 
-// The settings of a run that begins amid the program; the first line begins where it did.
+// Sets the start of a run in the middle of the program; the program's first line begins at the same point as before.
 void begin_amid(const run::Start& start, const std::optional<ResumeRecord>& before, bool resume,
                 run::RunSettings& settings) {
   if (before) settings.start = start_of(start.machine, *before);
@@ -120,7 +120,7 @@ void begin_amid(const run::Start& start, const std::optional<ResumeRecord>& befo
   settings.place = before->place;
 }
 
-// The last run of the same program, for --from-line: what it knows of the program's begin.
+// For --from-line: the last run of the same program, which has the start of the program.
 std::optional<ResumeRecord> run_before(driver::Card& card, const CardRunOptions& options) {
   if (options.settings.first_line == 1) return std::nullopt;
   try {
@@ -154,19 +154,19 @@ ResumeRecord record_of(driver::Card& card, const CardRunOptions& options, const 
   record.start.assign(pulses.begin(), pulses.end());
   for (unsigned n = 0; n < card.identification().axes; ++n) record.zero.push_back(card.read_machine_zero(n));
   record.begin = run::begin_of(settings, plan);
-  card.abort();  // the counts of what has begun are 0 from here on
+  card.abort();  // resets the counts of begun commands
   record.time = card.read_snapshot().time;
   return record;
 }
 
-// While the run lasts its file says that the card knows the place; behind it, what became of it.
+// The run's record: during the run its file states that the card has the place; afterwards it states the result.
 class Record {
  public:
   Record(driver::Card& card, const CardRunOptions& options, const ResumeRecord& record)
       : card_(card), file_(options.card.resume()), record_(record) {
     file_.write(record_);
   }
-  // The run is made: a file that cannot be written is not worth its end.
+  // The run is complete, so a file that cannot be written is only a note.
   void ended() {
     record_.state = ResumeRecord::State::kDone;
     try {
@@ -181,7 +181,7 @@ class Record {
   }
 
  private:
-  // How far on the path it is, unless a fault's message has told or the card does not answer.
+  // The place on the path; empty if a fault's message has reported it or the card does not answer.
   std::string place() const noexcept {
     try {
       const StoppedCard stopped = read_stopped(card_);
@@ -197,10 +197,10 @@ class Record {
   ResumeRecord record_;
 };
 
-// Beyond the watchdog's time nothing is worth waiting for: the card has stopped. A second more for what is slow.
+// After the watchdog's time the card has stopped, so waiting longer is useless. One second is added for slow links.
 constexpr std::chrono::seconds kBeyondWatchdog(1);
 
-// Where the run ended because the card was no longer there.
+// For a run that ended because the card was not reachable.
 void tell_of_lost_link(const transport::Connection& connection, const machine::Machine& machine) noexcept {
   if (!connection.lost()) return;
   try {
@@ -215,7 +215,7 @@ void tell_of_lost_link(const transport::Connection& connection, const machine::M
   }
 }
 
-// The card stops by itself where this program dies or is stopped.
+// Runs with the watchdog: the card stops by itself if this program dies or is stopped.
 run::Outcome run_watched(run::Runner& runner, driver::Card& card, transport::Connection& connection,
                          const machine::Machine& machine, const CardRunOptions& options, Record& record) {
   const MotionWatchdog watchdog(card, machine.motion);

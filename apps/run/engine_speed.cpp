@@ -8,7 +8,7 @@
 namespace trammel::app {
 namespace {
 
-constexpr double kWorthMeasuring = 10e6;  // clocks; fewer take seconds
+constexpr double kWorthMeasuring = 10e6;  // clocks; fewer take only seconds
 constexpr double kLong = 60;              // s
 
 }  // namespace

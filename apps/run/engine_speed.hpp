@@ -1,4 +1,4 @@
-// How long the Verilated card will take for a program, said before it starts.
+// Estimates how long the Verilated card will take for a program, before it starts.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace trammel::app {
 
-// A note for people when a run of so many seconds of card time would take the RTL engine minutes on this machine, by
-// the speed of such a card measured now (0.3 s of work); nothing for shorter runs and for the model engine.
+// A note if a run of `card_seconds` would take the RTL engine minutes on this machine. The speed of such a card is
+// measured by this call (0.3 s of work). None for shorter runs and for the model engine.
 std::optional<std::string> long_run_note(const sim::SimulationOptions& options, double card_seconds);
 
 }  // namespace trammel::app

@@ -18,7 +18,7 @@
 namespace trammel::app {
 namespace {
 
-constexpr double kShareOfVelocity = 0.25;  // as a jog's default
+constexpr double kShareOfVelocity = 0.25;  // the default of a jog
 constexpr double kMinute = 60;
 
 double speed_of(const machine::Machine& machine, const gcode::Coordinates& from, const gcode::Coordinates& to) {

@@ -40,7 +40,7 @@ double percent_of(const std::string& option, std::string_view text, double most,
   return *value;
 }
 
-// "M900" or "M862.3".
+// Parses "M900" or "M862.3".
 gcode::CodeWord code_word_of(const std::string& text) {
   const char letter = text.empty() ? ' ' : static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   const std::string_view digits = std::string_view(text).substr(text.empty() ? 0 : 1);
@@ -58,7 +58,7 @@ gcode::CodeWord code_word_of(const std::string& text) {
   return word;
 }
 
-// A resume ends the latest hold alone: two that overlap have no meaning that all would guess.
+// A resume ends only the latest hold, so overlapping holds are ambiguous.
 void refuse_overlaps(const std::vector<OperatorEvent>& events) {
   const OperatorEvent* hold = nullptr;
   for (const OperatorEvent& event : events) {
@@ -74,7 +74,7 @@ void refuse_overlaps(const std::vector<OperatorEvent>& events) {
   }
 }
 
-// Speed and inputs, as an operator sets them from outside of the program.
+// Options for the actions of an operator outside the program: speed and inputs.
 void add_operator_options(CLI::App& command, MotionChoice& choice) {
   command
       .add_option("--override", choice.percent,

@@ -1,5 +1,5 @@
-// Options of `trammel run` that an operator has at the machine: overrides, holds, where to begin, what to leave out;
-// and what the machine's inputs do.
+// Options of `trammel run` that correspond to an operator's actions at the machine: overrides, holds, the starting
+// line, blocks to skip; and events at the machine's inputs.
 #pragma once
 
 #include <cstdint>
@@ -30,11 +30,11 @@ struct MotionChoice {
   bool run_deleted = false;
 
   void add_to(CLI::App& command);
-  // Throw UsageError for what is malformed or out of range. `max_percent`: the largest override that the machine's
-  // limits leave room for.
+  // Throw UsageError for malformed or out-of-range values. `max_percent`: the largest override that the machine's
+  // limits allow.
   simulation::Operation operation(double max_percent) const;
   run::RunSettings settings() const;
-  // The options that change a program's plan, and their values.
+  // The options that change a program's plan, with their values.
   std::map<std::string, std::string> of_plan() const;
 };
 

@@ -17,7 +17,7 @@ namespace {
 constexpr int kLargestNumber = 5602;
 constexpr double kLargestValue = 1e12;
 
-// The next word of a line, which is taken from it.
+// Returns the next word of a line and removes it from the line.
 std::string_view word_of(std::string_view& line) {
   constexpr std::string_view kBlanks = " \t\r";
   line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));

@@ -1,5 +1,5 @@
-// What a program leaves to the next one: parameters, offsets, homes and the tool in the spindle, by LinuxCNC's numbers.
-// One "number value" a line, as in LinuxCNC's .var files.
+// The data that a program leaves for the next one: parameters, offsets, homes and the tool in the spindle, with
+// LinuxCNC's numbers. One "number value" per line, as in LinuxCNC's .var files.
 #pragma once
 
 #include <map>
@@ -7,10 +7,10 @@
 
 namespace trammel::app {
 
-// A file that is not there is an empty one. Throws UsageError, naming file and line, for what is no parameter.
+// A missing file counts as empty. Throws UsageError, naming file and line, for a line that is not a parameter.
 std::map<int, double> load_parameters(const std::string& file);
 
-// What load_parameters() reads as the same numbers.
+// Text from which load_parameters() reads the same numbers.
 std::string parameters_text(const std::map<int, double>& parameters);
 
 }  // namespace trammel::app

@@ -1,4 +1,4 @@
-// How the speed changes, and why so: what `trammel run` says of S-curves and trapezoids.
+// The text of `trammel run` about S-curves and trapezoids.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace trammel::app {
 
-const char* profile_name(const run::PlannedProfile& profile);  // as of --profile
-std::string profile_text(const run::PlannedProfile& profile);  // a line
+const char* profile_name(const run::PlannedProfile& profile);  // as in --profile
+std::string profile_text(const run::PlannedProfile& profile);  // one line
 
-// A line an axis whose acceleration would take more than a second to rise: most likely not mm/s^3.
+// A line for each axis whose acceleration would take more than a second to rise: its jerk is probably not in mm/s^3.
 std::vector<std::string> jerk_warnings(const machine::Machine& machine);
 
 }  // namespace trammel::app

@@ -23,7 +23,7 @@ CheckResult check_program(const run::ProgramLines& lines, const machine::Machine
 
 // Some lines of text, units in every one.
 std::string summary(const CheckResult& result);
-// What it has in common with a run's result, under the same names.
+// The results that are also in a run's JSON, with the same names.
 std::string json_text(const CheckResult& result);
 
 }  // namespace trammel::app

@@ -19,13 +19,13 @@ namespace trammel::app {
 
 namespace {
 
-// Bytes of the line that a chunk leaves without its end; `before`: of that line before the chunk.
+// Length of the unfinished line at the end of a chunk; `before`: bytes of that line before the chunk.
 std::size_t unfinished_line(std::size_t before, std::string_view chunk) {
   const std::size_t end = chunk.find_last_of("\r\n");
   return end == std::string_view::npos ? before + chunk.size() : chunk.size() - 1 - end;
 }
 
-// Whether all of it was written; errno says why not.
+// Returns whether all of it was written; otherwise errno gives the reason.
 bool write_whole(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
@@ -49,7 +49,7 @@ ProgramFile::ProgramFile(const std::string& file, std::optional<std::uint64_t> c
     throw UsageError("standard input: is closed: no program can be read from it");
   }
   if (S_ISDIR(status.st_mode)) throw UsageError(fmt::format("{}: is a directory, not a program", name_));
-  // Standard input may have been read in part by who gave it.
+  // The parent may have read a part of standard input.
   const bool starts_over = S_ISREG(status.st_mode) && ::lseek(descriptor_, 0, SEEK_CUR) == 0;
   if (copy_limit && !starts_over) copy_to_temporary(*copy_limit);
 }
@@ -63,7 +63,7 @@ void ProgramFile::copy_to_temporary(std::uint64_t limit) {
   std::uint64_t copied = 0;
   std::size_t line = 0;
   ssize_t count = 0;
-  // The reader refuses a longer line, so that it needs nothing behind it.
+  // The reader refuses a longer line, so the rest of the program is not needed.
   while (line <= gcode::kLongestLine && (count = ::read(descriptor_, buffer.data(), buffer.size())) > 0) {
     const std::string_view chunk(buffer.data(), static_cast<std::size_t>(count));
     copied += chunk.size();

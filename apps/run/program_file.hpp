@@ -1,5 +1,5 @@
-// The program that `trammel run` reads twice. Standard input, a pipe or a device can be read only once: it is copied to
-// a temporary file first, which has no name and so cannot be left behind. Not thread-safe.
+// The program file, which `trammel run` reads twice. Standard input, a pipe or a device can be read only once, so it is
+// first copied to a temporary file, which has no name and therefore cannot be left behind. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,17 @@ namespace trammel::app {
 
 class ProgramFile {
  public:
-  // "-" is standard input. `copy_limit`: bytes of the copy at most; without it the program is read once and not copied.
-  // Throws UsageError when it cannot be read or is longer than the limit, std::runtime_error when it cannot be copied.
+  // "-" is standard input. `copy_limit`: largest size of the copy, bytes; none: the program is read once and not
+  // copied. Throws UsageError if the program cannot be read or is longer than the limit, and std::runtime_error if it
+  // cannot be copied.
   ProgramFile(const std::string& file, std::optional<std::uint64_t> copy_limit);
   ~ProgramFile();
   ProgramFile(const ProgramFile&) = delete;
   ProgramFile& operator=(const ProgramFile&) = delete;
 
-  // For messages.
+  // The file's name, for messages.
   const std::string& name() const { return name_; }
-  // Its lines from the first one on; not two at a time. The file must outlive them.
+  // The program's lines from the first one on; only one reader at a time. The file must outlive it.
   gcode::FileLines lines() const;
 
  private:

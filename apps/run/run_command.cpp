@@ -38,7 +38,8 @@
 namespace trammel::app {
 namespace {
 
-// A simulated card at 1 MHz runs programs faster than life; only the resolution in time differs from the real clock.
+// A simulated card at 1 MHz runs programs faster than real time; compared with the real clock only the time resolution
+// differs.
 constexpr std::uint32_t kSimulatedClock = 1'000'000;
 
 constexpr std::uint64_t kDefaultPipeLimit = 512;  // MiB
@@ -106,7 +107,7 @@ void tell_of_nothing(const run::Plan& plan) {
   if (plan.segments == 0) tell("note", fmt::format("{} moves nothing", plan.file));
 }
 
-// A list of steps, a picture and a time of the operator's need the pins and the clocks of a simulated card.
+// Step lists, pictures and timed operator events need the pins and clocks of a simulated card.
 void refuse_what_needs_the_simulation(const RunArguments& options) {
   const CardChoice& card = options.card;
   options.engine.refuse_with(card);
@@ -123,20 +124,20 @@ void refuse_what_needs_the_simulation(const RunArguments& options) {
   if (options.check) throw UsageError("--check: nothing runs, so it takes no --card");
 }
 
-// Throws where a warning is lost: most come before anything moves, and then nothing does.
+// Throws if a warning cannot be written. Most warnings come before any motion, and then nothing moves.
 void warn(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) tell("warning", text);
   finish_standard_streams();
 }
 
-// Of the program, on every card.
+// Settings of the program, for every card.
 run::RunSettings settings_of(const RunArguments& options) {
   run::RunSettings settings = options.motion.settings();
   if (options.parameters) settings.reader.parameters = load_parameters(*options.parameters);
   return settings;
 }
 
-// The largest override that the machine's limits leave room for.
+// The largest override that the machine's limits allow.
 double max_percent(const machine::Machine& machine) { return 100 * machine.motion.max_override; }
 
 std::optional<std::uint64_t> copy_limit(const RunArguments& options) {
@@ -144,7 +145,7 @@ std::optional<std::uint64_t> copy_limit(const RunArguments& options) {
   return options.pipe_limit.value_or(kDefaultPipeLimit) << 20U;
 }
 
-// From its beginning, each time. `file` must outlive them. `meanwhile`: as of gcode::FileLines.
+// Each call returns the lines from the beginning. `file` must outlive them. `meanwhile`: as in gcode::FileLines.
 run::ProgramLines lines_of(const ProgramFile& file, const std::function<void()>& meanwhile = {}) {
   return [&file, meanwhile]() -> std::unique_ptr<gcode::LineSource> {
     std::unique_ptr<gcode::FileLines> lines(new gcode::FileLines(file.lines()));
@@ -153,7 +154,7 @@ run::ProgramLines lines_of(const ProgramFile& file, const std::function<void()>&
   };
 }
 
-// Refuses to write over what the run reads.
+// Refuses to overwrite the inputs of the run.
 void keep_inputs(const RunArguments& options, Outputs& outputs) {
   outputs.keep("the program", options.program);
   if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
@@ -162,7 +163,7 @@ void keep_inputs(const RunArguments& options, Outputs& outputs) {
   outputs.check();
 }
 
-// With --stream the program is read once, and its lines cannot be known before.
+// With --stream the program is read only once, so the hash of its lines is not known before the run.
 ResumeKey key_of(const RunArguments& options, const ProgramFile& file) {
   ResumeKey key;
   key.program = file.name();
@@ -211,7 +212,7 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   run.key = key_of(options, file);
   CardRunResult result;
   with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
-    // A program that comes slowly keeps the card's watchdog from expiring, and can be stopped.
+    // While program lines arrive slowly, this serves the card's watchdog and stop requests.
     const run::ProgramLines lines = lines_of(file, [&card] { driver::serve_requests(card); });
     result = run_on_card(lines, machine, card, connection, run);
   });
@@ -231,7 +232,7 @@ void check(const run::ProgramLines& lines, const MachineChoice& choice, const ma
   outputs.commit(summary(result) + choice.line());
 }
 
-// The files of a run in simulation: nullptr where an option was not given.
+// The output files of a simulated run; nullptr for an option that was not given.
 struct SimulationFiles {
   explicit SimulationFiles(const RunArguments& options)
       : json(all.add("--json", options.json)),
@@ -270,7 +271,7 @@ simulation::RunOptions simulation_options(const RunArguments& options, const mac
   return run;
 }
 
-// What people may want to know before a long wait.
+// Notes for people before a long wait.
 void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double planned_seconds) {
   if (const auto text = long_run_note(engine, planned_seconds)) tell("note", *text);
   if (engine.axes != axes) {
@@ -279,7 +280,7 @@ void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double 
   }
 }
 
-// Shows how far the run is.
+// Shows the progress of the run.
 class SimulationProgress final : public run::Observer {
  public:
   SimulationProgress(const simulation::SimulatedRun& run, double planned_seconds, double clock_hz, bool always)
@@ -298,9 +299,9 @@ class SimulationProgress final : public run::Observer {
   ProgressBar bar_;
 };
 
-// For the page of a run: what goes on around the card. Nothing without --report.
+// Records events around the card for the page of a run; empty without --report.
 struct PageListeners {
-  // After make_card().
+  // Construct after make_card().
   PageListeners(const SimulationFiles& files, simulation::SimulatedRun& run, world::World* world) {
     if (files.report == nullptr) return;
     holds.emplace(run);
@@ -311,7 +312,7 @@ struct PageListeners {
   std::optional<WorldRecord> record;
 };
 
-// A simulation, its world, and who listens to them.
+// A simulation, its world, and their listeners.
 struct Simulation {
   const RunArguments& options;
   const machine::Machine& machine;
@@ -330,7 +331,7 @@ void write_report(const Simulation& of, PageListeners& listeners, const simulati
       cause.has_value());
 }
 
-// Of a run that a cause has ended: the page alone. What goes wrong with it is said, and the run's own error stays.
+// After a run that a cause has ended, writes only the page. Its errors are reported, but the run's own error remains.
 void report_stop(const Simulation& of, PageListeners& listeners, const run::RunError& error) {
   if (of.files.report == nullptr) return;
   try {
@@ -344,7 +345,7 @@ void report_stop(const Simulation& of, PageListeners& listeners, const run::RunE
   }
 }
 
-// The run itself, when all is checked: to the end of the motion.
+// Runs the program after all checks, to the end of the motion.
 run::Outcome stream_to_simulation(const Simulation& of, const sim::SimulationOptions& engine, double planned_seconds,
                                   PageListeners& listeners) {
   SimulationProgress progress(of.run, planned_seconds, engine.clock_hz, of.options.progress);
@@ -356,7 +357,7 @@ run::Outcome stream_to_simulation(const Simulation& of, const sim::SimulationOpt
     report_stop(of, listeners, error);
     throw;
   } catch (...) {
-    // Whatever has stopped it: where that has left the machine.
+    // After any error, report the machine's position.
     if (of.world != nullptr) tell("note", world_text(*of.world, "; "));
     throw;
   }

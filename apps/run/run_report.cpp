@@ -21,10 +21,10 @@ using simulation::RunResult;
 
 namespace {
 
-// Of every run that has a result: a mismatch ends it.
+// Mismatches of a run with a result: always 0, because a mismatch ends the run.
 constexpr int kMismatches = 0;
 
-// Without an exponent, and without digits that nobody reads.
+// Without an exponent and without insignificant digits.
 std::string number(double feed) { return feed < 100 ? fmt::format("{:.3g}", feed) : fmt::format("{:.0f}", feed); }
 
 const char* text_of(planner::SpeedLimit cause) {
@@ -205,7 +205,7 @@ std::vector<std::string> plan_warnings(const run::Plan& plan) {
   return lines;
 }
 
-// Machine coordinates.
+// In machine coordinates.
 std::string probes_text(const std::string& axes, const std::vector<run::ProbeMade>& probes) {
   std::string text;
   for (const run::ProbeMade& probe : probes) {
@@ -227,7 +227,7 @@ nlohmann::ordered_json probes_json(const std::string& axes, const std::vector<ru
 
 namespace {
 
-// How much longer than planned the run took is their doing, where nobody held the card or changed its speed.
+// The excess over the planned time is caused by under-runs if nobody held the card or changed its speed.
 std::string under_runs_text(const RunResult& result, double seconds) {
   if (!result.outcome.under_runs) return "";
   std::string text = fmt::format("  under-runs: {}", *result.outcome.under_runs);
@@ -332,7 +332,7 @@ std::string report_json(const RunResult& result, const run::PlannedProfile& prof
   json["deviation_places"] = {{"line", place_json(result.line_place, result.end.axes.size())},
                               {"arc", place_json(result.arc_place, result.end.axes.size())}};
   json.update(surroundings);
-  // A name may hold any bytes.
+  // A name may contain any bytes.
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

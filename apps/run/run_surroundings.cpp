@@ -17,7 +17,7 @@ namespace {
 
 constexpr unsigned kEmergencyStop = report::Surroundings::kEmergencyStop;
 
-// What a carriage does when the pulses have ended: it swings for so long.
+// Time for which a carriage oscillates after the last pulse.
 constexpr std::chrono::milliseconds kSwing{50};
 
 std::uint64_t levels_of(const world::World& world) {
@@ -44,7 +44,8 @@ StopCause stop_cause(driver::Card& card, const run::RunError& error, const run::
     return cause;
   }
   cause.name = card.read_fault_text();
-  // By the bits of FAULT. On a ramp that did not do, as beyond an overtravel, the card has stopped at once.
+  // The reaction follows from the bits of FAULT. If a ramp was insufficient (for example, an overtravel was exceeded),
+  // the card has then stopped at once.
   const bool ramps = (at.faults & ~card.parts().registers.read(card_map::reg::kStopReaction)) == 0;
   cause.reaction = !ramps ? "immediate stop" : card.read_rest().exact() ? "ramp" : "ramp, then immediate stop";
   return cause;
@@ -59,7 +60,7 @@ void HoldWatch::progress(const run::Progress& progress) {
 
 namespace {
 
-// A quarter of a full step: less is how a motor follows.
+// A quarter of a full step: a smaller difference is the normal lag of a motor.
 std::vector<double> least_differences(const world::World& world) {
   std::vector<double> least;
   for (std::size_t n = 0; n < world.axes(); ++n) {
@@ -105,7 +106,8 @@ std::string role_text(driver::Role role, const machine::Machine& machine) {
   return fmt::format("{} {}", machine.axes[role.axis()].letter, kind.substr(0, kind.find(" of axis")));
 }
 
-// One input of the page: what it is for, what the world has there, how it began, and when it is active.
+// Describes one input for the page: its function, the world's contact at it, its level at the beginning, and its active
+// level.
 class Lanes {
  public:
   // `record`: null without a world.
@@ -155,7 +157,7 @@ class Lanes {
     return nullptr;
   }
   bool level_at_begin(unsigned input) const { return (levels_ >> input & 1U) != 0; }
-  // Without a role of the card as the world's contact has it when it is pressed; what is at neither is active at 1.
+  // For an input without a role on the card: the level of the world's pressed contact. Without a contact either: 1.
   bool active_level(unsigned input, const world::World::ContactState* contact) const {
     if (input == kEmergencyStop) return true;
     if (machine_.probe.input == input) return machine_.probe.touched_level;

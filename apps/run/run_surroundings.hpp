@@ -1,5 +1,5 @@
-// What the page of a run says beside the motion: inputs by role, causes with their reactions, and where carriages and
-// pulses part. Not thread-safe.
+// Data for the page of a run in addition to the motion: inputs by role, causes with their reactions, and deviations
+// between carriages and pulses. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,18 @@
 
 namespace trammel::app {
 
-// Of a run that a cause has ended, from the card: the cause, its reaction, time and place. Waits for its ramp's end.
+// The cause that ended a run, from the card: its reaction, time and position. Waits for the end of the ramp.
 struct StopCause {
-  std::string name;      // "LIMIT (axis 0 plus)"; of a run that ended without a fault why it did
+  std::string name;      // "LIMIT (axis 0 plus)"; without a fault, the reason of the end
   std::string reaction;  // "ramp", "immediate stop", or "end of the run" without a fault
   std::uint64_t cycle = 0;
-  std::vector<std::int64_t> position;  // pulses by motor, from machine zero on
-  std::size_t line = 0;                // of the program
+  std::vector<std::int64_t> position;  // pulses by motor, relative to machine zero
+  std::size_t line = 0;                // program line
 };
 StopCause stop_cause(driver::Card& card, const run::RunError& error, const run::Plan& plan, std::size_t motors);
 
-// Holds of the feed hold button, at the look at the card that has seen them (200 a second); and commands sent.
+// Records holds of the feed hold button, with the time of the poll that has seen them (200 polls per second), and the
+// number of commands sent.
 class HoldWatch final : public run::Observer {
  public:
   explicit HoldWatch(const simulation::SimulatedRun& run) : run_(run) {}
@@ -49,10 +50,10 @@ class HoldWatch final : public run::Observer {
   bool held_ = false;
 };
 
-// Listens to a world for the page of a run.
+// Records the events of a world for the page of a run.
 class WorldRecord final : public world::Watcher {
  public:
-  // At clock 0. All must outlive it; the sink has the page's head.
+  // Construct at clock 0. `sink` and `world` must outlive this object; the sink must already contain the page's head.
   WorldRecord(run::TextSink& sink, world::World& world);
   ~WorldRecord() override;
   WorldRecord(const WorldRecord&) = delete;
@@ -64,10 +65,10 @@ class WorldRecord final : public world::Watcher {
 
   std::uint64_t levels_at_begin() const { return begin_; }
   const std::vector<world::World::ContactState>& contacts_at_begin() const { return contacts_; }
-  // By axis of the world: the clock at which a carriage first was a whole field away from its pulses, and how far.
+  // By axis of the world: the clock at which a carriage was first a whole field away from its pulses, and the distance.
   struct Parting {
     std::optional<std::uint64_t> began;
-    std::int64_t most = 0;  // pulses lost, the largest
+    std::int64_t most = 0;  // largest number of lost pulses
   };
   const std::vector<Parting>& partings() const { return partings_; }
 

@@ -39,7 +39,7 @@ serve::Settings settings_of(const ServeOptions& options) {
   settings.real_time = !options.fast;
   settings.baud = options.baud;
   settings.note = say_served;
-  // A terminal's client cannot be sent away, and keeps nobody else from it.
+  // The client of a terminal cannot be disconnected, and does not exclude others.
   if (!options.terminal) {
     settings.hello = 5s;
     settings.silence = std::chrono::milliseconds(static_cast<std::int64_t>(options.silence * 1000));
@@ -56,7 +56,7 @@ std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
   }
 }
 
-// All that the card makes, and what it makes since somebody has begun to count.
+// The path of all steps of the card, and of those since the start of a count.
 class ServedPath final : public driver::StepSink {
  public:
   void pin_step(const driver::PinStep& /*step*/) override {}
@@ -78,7 +78,7 @@ class ServedPath final : public driver::StepSink {
   run::PathIdentity counted_;
 };
 
-// What a program or a person needs to connect, on standard output at once.
+// Prints the data that a program or a person needs to connect, on standard output at once.
 void tell_where(const transport::Listener& listener, const std::string& token) {
   to_standard_output(
       fmt::format("card {}\ntoken {}\nmove with --card '{}?token={}'\n", listener.url(), token, listener.url(), token));
@@ -118,7 +118,7 @@ void serve_card(const ServeOptions& options) {
   }
   const serve::CardServer::Counts& counts = server.counts();
   const double seconds = static_cast<double>(engine->cycles()) / options.clock();
-  std::string lockstep;  // asking for it settles what was not compared yet
+  std::string lockstep;  // the call completes the comparison of pending cycles
   if (const auto cycles = engine->lockstep_cycles())
     lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
   say_served(fmt::format("served {} clients, {} refused; {} requests, {} damaged; {:.3f} s of card time{}",
@@ -127,7 +127,7 @@ void serve_card(const ServeOptions& options) {
   if (world) say_served(world_text(*world, "; "));
 }
 
-// `others`: what a card in front of LinuxCNC does not have.
+// `others`: options that do not apply to a card for LinuxCNC.
 void add_hm2_options(CLI::App& command, ServeOptions& options, const std::vector<CLI::Option*>& others) {
   auto* hm2 = command
                   .add_option("--hm2", options.hm2,

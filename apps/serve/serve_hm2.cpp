@@ -43,7 +43,7 @@ std::unique_ptr<hm2::UdpPort> open_udp(const UdpPlace& place) {
   }
 }
 
-// What has left the pins, which the card's counters are compared with.
+// Sums the pulses at the pins, for comparison with the card's counters.
 class PinPulses final : public driver::StepSink {
  public:
   void pin_step(const driver::PinStep& step) override { places_[step.axis] += step.direction; }
@@ -80,7 +80,7 @@ void say_counts(const hm2::Board::Counts& board, const hm2::Server::Counts& serv
 }
 
 void say_places(sim::Engine& engine, const PinPulses& pins, const ServeOptions& options) {
-  std::string lockstep;  // asking for it settles what was not compared yet
+  std::string lockstep;  // the call completes the comparison of pending cycles
   if (const auto cycles = engine.lockstep_cycles())
     lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
   say_served(fmt::format("pulses at the pins {}; counters {}; {:.3f} s of card time{}", pins.text(options.axes),
@@ -88,7 +88,7 @@ void say_places(sim::Engine& engine, const PinPulses& pins, const ServeOptions& 
                          lockstep));
 }
 
-// A driver sends to the hardware address that the card tells, whatever the network says.
+// A driver sends to the hardware address that the card reports, independent of the network.
 void warn_of_hardware(const hm2::UdpPort& port, const std::array<std::uint8_t, 6>& hardware) {
   if (std::any_of(hardware.begin(), hardware.end(), [](std::uint8_t byte) { return byte != 0; })) return;
   tell("warning", fmt::format("{} has no hardware address: hm2_eth reaches the card only on the address of an Ethernet "

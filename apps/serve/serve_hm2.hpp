@@ -5,7 +5,7 @@
 
 namespace trammel::app {
 
-// Until a signal; with --once until the first driver has gone.
+// Serves until a signal arrives; with --once until the first driver has disconnected.
 void serve_hm2(const ServeOptions& options);
 
 }  // namespace trammel::app

@@ -11,7 +11,7 @@ namespace trammel::app {
 namespace {
 
 constexpr std::uint32_t kServedClock = 1'000'000;
-// Step times and latency in front of LinuxCNC; the model runs it in real time.
+// With LinuxCNC, step times and latency need this clock; the model runs it in real time.
 constexpr std::uint32_t kHm2Clock = 10'000'000;
 
 volatile sig_atomic_t g_serving_ended = 0;

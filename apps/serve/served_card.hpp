@@ -1,4 +1,4 @@
-// What both kinds of `trammel serve` have in common: options, the card, its buttons, the end by a signal.
+// Common parts of both kinds of `trammel serve`: options, the card, its switches, the end by a signal.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace trammel::app {
 
 struct ServeOptions {
-  std::optional<std::string> engine;  // rtl, or with --hm2 the model
+  std::optional<std::string> engine;  // default: rtl; with --hm2: model
   std::optional<std::uint32_t> clock_hz;
   unsigned axes = 4;
   std::string listen = "127.0.0.1";
@@ -35,14 +35,15 @@ struct ServeOptions {
 
 sim::SimulationOptions served_engine(const ServeOptions& options);
 
-// A note of the server's.
+// Prints a note of the server.
 void say_served(const std::string& text);
 
-// The first signal ends the server in order; the next one as it would without this.
+// Makes the first signal end the server in order; the next one has its default effect.
 void end_serving_at_signals();
 bool serving_ended();
 
-// Switches that are pressed at times of the card: where its time has come between two turns of the server.
+// Switches that are pressed at given card times: each is pressed when its time has passed, between two turns of the
+// server.
 class Switches {
  public:
   explicit Switches(const ServeOptions& options);

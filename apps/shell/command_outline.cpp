@@ -5,7 +5,7 @@
 namespace trammel::app {
 namespace {
 
-// The option reader writes the choices of an option into the name of its type: TEXT:{rtl,model}.
+// The option reader includes an option's choices in its type name: TEXT:{rtl,model}.
 std::vector<std::string> choices_in(const std::string& type) {
   const std::size_t open = type.find('{');
   const std::size_t close = type.find('}', open);

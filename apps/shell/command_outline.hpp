@@ -1,4 +1,4 @@
-// The command's options as plain data, for what is made from them.
+// The command's options as plain data, from which shell completions and the manual are made.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 namespace trammel::app {
 
 struct OptionOutline {
-  std::vector<std::string> names;  // "--engine", "-h"; of a positional its name alone
+  std::vector<std::string> names;  // "--engine", "-h"; for a positional only its name
   bool positional = false;
   bool takes_value = false;
   bool repeatable = false;
-  std::string value;                 // what stands for it in a help text, as FILE
+  std::string value;                 // placeholder in a help text, such as FILE
   std::vector<std::string> choices;  // empty: not a choice
   std::string default_value;
   std::string about;

@@ -18,7 +18,8 @@ std::string with(std::string text, char special, const std::string& replacement)
   return text;
 }
 
-// Between single quotes, as all three shells read them (fish knows \' there, the others end the quotes for it).
+// Quotes text with single quotes for all three shells (fish understands \' inside the quotes, the others end the quotes
+// for it).
 std::string quoted(const std::string& text) { return "'" + with(text, '\'', "'\\''") + "'"; }
 
 std::string names_of(const std::vector<CommandOutline>& commands) {
@@ -37,7 +38,7 @@ std::string bash_completion(const std::vector<CommandOutline>& commands) {
       names += fmt::format("{}{}", names.empty() ? "" : " ", fmt::join(option.names, " "));
       if (!option.takes_value) continue;
       for (const std::string& name : option.names) {
-        // Without choices the shell's own completion takes over: file names.
+        // Without choices the shell completes file names.
         values += fmt::format("    {}:{}) COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n", command.name,
                               name, fmt::join(option.choices, " "));
       }
@@ -65,7 +66,7 @@ complete -o default -F _trammel trammel
                      names_of(commands), values, words);
 }
 
-// What _arguments wants of an option: its names, a text, and how its value is completed.
+// The format of an option for _arguments: its names, a text, and the completion of its value.
 std::string zsh_argument(const OptionOutline& option) {
   const auto plain = [](std::string text) { return with(with(with(std::move(text), '[', "("), ']', ")"), ':', "\\:"); };
   const std::string value = option.choices.empty() ? "_files" : fmt::format("({})", fmt::join(option.choices, " "));
@@ -129,7 +130,7 @@ std::string fish_completion(const std::vector<CommandOutline>& commands) {
   return text;
 }
 
-// A line of roff: no escape of its own, and no dot or quote that would begin a request.
+// Escapes a line for roff, so that it contains no escape sequence and does not begin a request with a dot or quote.
 std::string roff(const std::string& text) {
   std::string line = with(with(text, '\\', "\\e"), '-', "\\-");
   for (std::size_t at = 0; (at = line.find('\n', at)) != std::string::npos; ++at) line.replace(at, 1, " ");

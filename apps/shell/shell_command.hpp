@@ -1,4 +1,5 @@
-// `trammel completion SHELL` and `trammel man`: what shells and manuals know of the command, made from its options.
+// `trammel completion SHELL` and `trammel man`: shell completions and the manual page, generated from the command's
+// options.
 #pragma once
 
 #include <string>
@@ -7,10 +8,10 @@
 
 namespace trammel::app {
 
-// To be added after all others: it tells of those that are there.
+// Must be added after all other commands, because it describes only those already added.
 void add_shell_commands(CLI::App& app);
 
-// A script for the shell, "bash", "zsh" or "fish", that completes subcommands, options, choices and file names.
+// A script for the shell ("bash", "zsh" or "fish") that completes subcommands, options, choices and file names.
 std::string completion_of(const CLI::App& app, const std::string& shell);
 
 // The manual page, in the man macros of roff.

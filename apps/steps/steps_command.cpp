@@ -45,7 +45,7 @@ std::string direction_of(const Step& step) {
   return result;
 }
 
-// One step: position and deviation before it.
+// One step, with the position and deviation before it.
 struct Row {
   std::uint64_t index;
   Step step;
@@ -83,7 +83,7 @@ void write_csv(Output& out, AnyInterpolator interpolator) {
   });
 }
 
-// The walk as it comes, so that its length does not matter.
+// Writes the steps as they are made, so the length of the walk does not matter.
 void write_json(Output& out, const interpolation::MethodInfo& method, AnyInterpolator interpolator) {
   const Position start = interpolator.position();
   print(out, "{{\n\"method\": \"{}\",\n\"time_unit\": \"{}\",\n", method.name, method.time_unit);

@@ -1,4 +1,4 @@
-// trammel steps: the steps of one method on one curve.
+// `trammel steps`: the steps of one method on one curve.
 #pragma once
 
 #include "common/command_line.hpp"

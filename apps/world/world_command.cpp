@@ -38,7 +38,7 @@ transport::CardUrl server_of(const WorldOptions& options) {
   return *url;
 }
 
-// As the server takes it: "press estop when X > 40".
+// The request in the server's format: "press estop when X > 40".
 std::string request_of(const WorldOptions& options) {
   std::string text = options.words.empty() ? "state" : fmt::format("{}", fmt::join(options.words, " "));
   if (!options.when) return text;

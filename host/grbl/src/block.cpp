@@ -19,14 +19,14 @@ constexpr unsigned kJogGroups = 1U << kDistance | 1U << kUnits | 1U << kNonModal
 bool is_arc(int motion) { return motion == 20 || motion == 30; }
 bool is_probe(int motion) { return motion / 10 == kProbe; }
 
-// The plane's axes, first and second, and the letter of an axis's offset to the centre.
+// axes_of_plane(): the first and the second axis of a plane. offset_of(): the letter of an axis's offset to the centre.
 std::array<char, 2> axes_of_plane(int plane) {
   if (plane == 17) return {'X', 'Y'};
   return plane == 18 ? std::array<char, 2>{'Z', 'X'} : std::array<char, 2>{'Y', 'Z'};
 }
 char offset_of(char axis) { return static_cast<char>('I' + (axis - 'X')); }
 
-// What the axis words are for. Without a word that says so they belong to the motion in force.
+// The command that uses the axis words. Without such a word they belong to the current motion mode.
 Words::Command command_of(const Words& words) {
   const bool implicit = words.command == Words::Command::kNone && !words.axes.empty();
   return implicit ? Words::Command::kMotion : words.command;
@@ -40,7 +40,7 @@ Status check_feed_mode(const Words& words, const Modal& after) {
 
 Status check_offset_data(const Words& words) {
   if (words.axes.empty()) return Status::kNoAxisWords;
-  if (!words.has('P') && !words.has('L')) return Status::kMissingWord;  // one that is missing counts as 0
+  if (!words.has('P') && !words.has('L')) return Status::kMissingWord;  // if one of the two is missing, it counts as 0
   if (words.has('P') && words.value('P') >= kLastSystem + 1) return Status::kCoordinateSystem;
   const int kind = words.has('L') ? static_cast<int>(words.value('L')) : 0;
   if (kind != 2 && kind != 20) return Status::kUnsupported;
@@ -74,7 +74,7 @@ Status check_motion(const Words& words, const Modal& after) {
   return is_probe(after.motion) && words.axes.empty() ? Status::kNoAxisWords : Status::kOk;
 }
 
-// `always`: letters that every line may have.
+// `always`: letters that every line may contain.
 Status check_unused(const Words& words, const Modal& after, std::string always) {
   if (words.non_modal == 40) always += "P";
   if (words.non_modal == 100) always += "PL";
@@ -83,7 +83,7 @@ Status check_unused(const Words& words, const Modal& after, std::string always) 
   return letters.find_first_not_of(always) == std::string::npos ? Status::kOk : Status::kUnusedWords;
 }
 
-// In Grbl's order: of two errors it names the first.
+// In Grbl's order, because Grbl reports the first of several errors.
 Status check(const Words& words, const Modal& after, const std::string& always) {
   if (words.has('N') && words.value('N') >= kLargestLineNumber + 1) return Status::kLineNumber;
   if (const Status status = check_feed_mode(words, after); status != Status::kOk) return status;
@@ -93,7 +93,7 @@ Status check(const Words& words, const Modal& after, const std::string& always) 
   return check_unused(words, after, always);
 }
 
-// The values as the reader may get them: what it would refuse and Grbl does not look at is left out.
+// The values for the reader, without those that Grbl ignores and the reader would refuse.
 std::string values_of(const Words& words, const Modal& after) {
   std::string values;
   const auto [first, second] = axes_of_plane(after.plane);
@@ -110,13 +110,13 @@ std::string values_of(const Words& words, const Modal& after) {
   return words.non_modal == 100 && !words.has('P') ? values + "P0 " : values;
 }
 
-// The words once more, for the reader: explicit motion, without what it need not see.
+// Writes the words for the reader: with an explicit motion, and without words that the reader does not need.
 std::string text_of(const Words& words, const Block& block) {
   const Modal& after = block.after;
   const bool axes_move = command_of(words) == Words::Command::kMotion && !words.axes.empty();
-  // The reader takes G53 in absolute coordinates alone.
+  // The reader accepts G53 only with absolute coordinates.
   const bool relative_g53 = words.non_modal == 530 && axes_move && !after.absolute;
-  // It takes one word of coolant in a line.
+  // The reader accepts one coolant word per line.
   const auto says = [&](const char* code) {
     return std::find(words.codes.begin(), words.codes.end(), code) != words.codes.end();
   };
@@ -151,7 +151,7 @@ void describe(const Words& words, Block& block) {
                   words.command == Words::Command::kToolLength || block.end;
 }
 
-// Grbl's M2 and M30 bring these back.
+// Sets the state to which Grbl's M2 and M30 return.
 void end_program(Modal& modal) {
   modal.motion = 10;
   modal.system = 54;

@@ -17,14 +17,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kFresh = 20ms;         // a look at the position serves for so long
-constexpr auto kInputsFresh = 100ms;  // and one at the inputs
-constexpr double kSpeedTime = 0.04;   // s of the card, over which a speed is measured
-// Blocks that the planner waits for before it sends any: as many as twice Grbl's planner holds.
+constexpr auto kFresh = 20ms;         // a position reading is valid for this time
+constexpr auto kInputsFresh = 100ms;  // a reading of the inputs is valid for this time
+constexpr double kSpeedTime = 0.04;   // s of card time, over which a speed is measured
+// Blocks that the planner collects before it sends any: twice the size of Grbl's planner.
 constexpr double kWindow = 32;
 constexpr double kMinute = 60;
 
-// The runner takes its lines' ownership.
+// The runner owns its lines; this adapter lends them.
 class BorrowedLines final : public gcode::LineSource {
  public:
   explicit BorrowedLines(gcode::LineSource& lines) : lines_(lines) {}
@@ -48,7 +48,7 @@ CardMachine::CardMachine(driver::Card& card, run::AttentiveBus& bus, const machi
 
 planner::CardLimits CardMachine::limits() const { return planner::limits_of(card_.identification()); }
 
-// Settings and place, as the card has them now.
+// Writes the settings to the card, and takes the place from it.
 void CardMachine::set_up(bool trust) {
   run::CardPlace place = run::read_card_place(card_);
   limited_ = machine_;
@@ -79,7 +79,7 @@ void CardMachine::begin_at(const gcode::Coordinates& at) {
   look_at_inputs();
 }
 
-// Other pulses a mm: the coordinates stay, and the axes count as not homed.
+// For a new scale: the coordinates stay, and the axes count as not homed.
 void CardMachine::keep_coordinates(const gcode::Coordinates& at) {
   const auto all = static_cast<unsigned>((1U << machine_.axes.size()) - 1);
   run::place_axes(card_, machine_, all, at, 0);
@@ -156,7 +156,7 @@ void CardMachine::set_meanwhile(std::function<void()> meanwhile) {
   });
 }
 
-// While a motion waits for lines nobody else serves the card's watchdog.
+// While a motion waits for lines, only this call serves the card's watchdog.
 void CardMachine::wait() {
   if (moving_) driver::serve_requests(card_);
   bus_.sleep(kLongestSleep);
@@ -265,12 +265,12 @@ bool CardMachine::homed() {
 End CardMachine::home(const std::vector<std::size_t>& axes) {
   const End end =
       guarded([&](End&) { run::home(card_, machine_, *position_, axes.empty() ? axes_with_switches() : axes); });
-  // What was not homed keeps the place that it had.
+  // After a successful homing, or if the place was known: axes that were not homed keep their place.
   if (end.alarm == Alarm::kNone || lost_.empty()) set_up(false);
   return end;
 }
 
-// Of the fault that stands; the axes are at rest then.
+// The result of the present fault. The axes are at rest when it returns.
 End CardMachine::fault() {
   if (!card_.read_status().faulted) return {};
   card_.wait_until_stopped();

@@ -56,11 +56,12 @@ bool Controller::take(const std::string& line, bool at_rest) {
   } else if (line.empty()) {
     answer(Status::kOk);
   } else if (line.rfind("$J=", 0) == 0) {
-    // Outputs are no reason to refuse a jog.
+    // A queue with output changes only is no reason to refuse a jog: the jog waits.
     if (busy && state_ == State::kIdle) return false;
     take_jog(line.substr(3));
   } else if (line[0] == '$') {
-    // What uses the machine is done from work(), since nothing is served within `meanwhile`.
+    // Commands that use the machine are executed from work(): within `meanwhile` the bus makes no further calls of it,
+    // so nothing would be served during such a command.
     const bool moves = state_ == State::kRun || state_ == State::kJog;
     if (line != "$G" && line != "$" && !moves && (busy || !at_rest)) return false;
     system(line);
@@ -75,7 +76,7 @@ bool Controller::take(const std::string& line, bool at_rest) {
   return true;
 }
 
-// What holds before the next line.
+// The state before the next line.
 Controller::Accepted Controller::accepted() const {
   const Modal& modal = interpreter_.modal();
   return {preamble(modal), {}, {interpreter_.place(), interpreter_.parameters(), modal.spindle, modal.speed}};
@@ -181,8 +182,8 @@ void Controller::ended(const End& end) {
   }
 }
 
-// As Grbl does at a reset and at an alarm. With a fault it waits until that is cleared: the card has set its safe
-// levels.
+// Switches outputs off as Grbl does at a reset and at an alarm. During a fault this is postponed until the fault is
+// cleared; the card has set its safe levels meanwhile.
 void Controller::switch_off() {
   interpreter_.end_spindle();
   interpreter_.end_coolant();
@@ -196,7 +197,7 @@ void Controller::switch_off() {
   executing_ = executing_alone_ = false;
 }
 
-// A stop sets the machine file's safe levels. What it has switched off comes back by a line of the sender alone.
+// A stop sets the machine file's safe levels. Only a new line of the sender switches these outputs on again.
 void Controller::see_safe_outputs() {
   const machine::MachineOutputs& outputs = machine_.machine().outputs;
   const std::uint16_t safe = outputs.safe();
@@ -205,7 +206,7 @@ void Controller::see_safe_outputs() {
   status_.overrides_changed();
 }
 
-// Lines that Grbl answers when they are done: probes, dwells, M0, M2 and M30.
+// Executes lines that Grbl answers when they are done: probes, dwells, M0, M2 and M30.
 void Controller::execute() {
   const Accepted line = std::move(*alone_);
   alone_.reset();
@@ -223,7 +224,7 @@ void Controller::execute() {
   answer(Status::kOk);
 }
 
-// Whether it was done to its end.
+// Returns whether the line was executed to its end.
 bool Controller::run_alone(const Accepted& line) {
   const std::string text = line.preamble + line.block.text;
   gcode::TextLines lines(text, "grbl");
@@ -238,7 +239,7 @@ bool Controller::run_alone(const Accepted& line) {
   return !end.stopped && end.alarm == Alarm::kNone && !reset_;
 }
 
-// Whether the line goes on. A probe's alarm leaves no line without its answer, as in Grbl.
+// Returns whether the line may continue. Even if the probe raises an alarm, the line gets its answer, as in Grbl.
 bool Controller::probe(const Accepted& line) {
   if (machine_.probe_touches() != line.block.probe_away) {
     raise(Alarm::kProbeInitial);

@@ -1,4 +1,4 @@
-// Real-time commands: answered at once, wherever the controller is.
+// Real-time commands: executed at once in every state.
 #include <algorithm>
 
 #include "trammel/grbl/controller.hpp"
@@ -73,7 +73,7 @@ void Controller::request_hold(State state) {
 
 void Controller::resume() {
   if (state_ != State::kHold && state_ != State::kDoor) {
-    if (executing_) machine_.hold(false);  // the machine's own feed hold button
+    if (executing_) machine_.hold(false);  // a hold by the machine's feed hold button
     return;
   }
   state_ = before_hold_;

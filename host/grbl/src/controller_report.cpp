@@ -1,4 +1,4 @@
-// What the controller tells of itself.
+// Reports of the controller.
 #include <fmt/format.h>
 
 #include "trammel/grbl/controller.hpp"
@@ -13,7 +13,7 @@ std::string name_of(State state, bool held, bool executing) {
     case State::kIdle:
       return "Idle";
     case State::kRun:
-      return held ? "Hold:0" : "Run";  // the machine's own feed hold button
+      return held ? "Hold:0" : "Run";  // a hold by the machine's feed hold button
     case State::kHold:
       return executing && !held ? "Hold:1" : "Hold:0";
     case State::kJog:

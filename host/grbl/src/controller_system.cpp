@@ -10,7 +10,7 @@
 namespace trammel::grbl {
 namespace {
 
-// What begins as one of Grbl's commands and is none is error 3, other text error 2.
+// Text that begins as one of Grbl's commands but is not one is error 3; other text is error 2.
 bool begins_command(char c) { return c == '#' || c == 'I' || c == 'R' || c == 'S'; }
 
 }  // namespace
@@ -51,7 +51,7 @@ Status Controller::short_status(char what) {
   return Status::kOk;
 }
 
-// Of a machine that stands.
+// Commands that need a machine at rest.
 Status Controller::still_status(const std::string& line) {
   if (line == "$#") {
     say(offsets_text());
@@ -119,7 +119,7 @@ Status Controller::startup_line(const std::string& line) {
   return Status::kOk;
 }
 
-// ">G21:ok", as Grbl shows them.
+// Shows each line as Grbl does: ">G21:ok".
 void Controller::run_startup() {
   for (std::size_t n = 0; n < Settings::kStartupLines; ++n) {
     const std::string line = settings_.startup(n);
@@ -149,7 +149,7 @@ Status Controller::restore(char what) {
   apply_settings();
   say("[MSG:Restoring defaults]");
   answer(Status::kOk);
-  reset_ = true;  // as Grbl
+  reset_ = true;  // Grbl resets here
   return Status::kOk;
 }
 
@@ -177,7 +177,7 @@ Status Controller::unlock() {
   interpreter_.stand(machine_.look().at);
   switch_off();
   say("[MSG:Caution: Unlocked]");
-  state_ = State::kIdle;  // without the startup lines, as Grbl: they may move the machine
+  state_ = State::kIdle;  // as in Grbl, the startup lines are not executed: they may move the machine
   return Status::kOk;
 }
 
@@ -189,7 +189,7 @@ Status Controller::home(const std::string& line) {
     if (!axis || !shape_.axes[*axis].homing) return Status::kInvalidStatement;
     axes.push_back(*axis);
   }
-  // A place that is not known is what homing is for.
+  // Homing is permitted with an unknown position, because it determines the position.
   if (state_ == State::kAlarm) machine_.unlock();
   state_ = State::kHome;
   executing_ = true;

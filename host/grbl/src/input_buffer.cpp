@@ -27,7 +27,7 @@ void InputBuffer::put(std::string_view bytes) {
   }
 }
 
-// CR, LF and CR LF end a line, wherever the bytes were parted.
+// CR, LF and CR LF end a line, even if CR and LF arrive separately.
 void InputBuffer::keep(char c) {
   const bool second = c == '\n' && after_return_;
   after_return_ = c == '\r';

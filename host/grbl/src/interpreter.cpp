@@ -18,7 +18,7 @@ int first_of(int kind) {
   return parameter::kFirstSystem + (kind - 54) * parameter::kBetweenSystems;
 }
 
-// Of the reader's parameters those that Grbl has, each with a value, so that none is left to the machine file.
+// Grbl's part of the reader's parameters. All have a value, so the machine file supplies none.
 std::map<int, double> whole(const std::map<int, double>& some) {
   std::map<int, double> all;
   const auto take = [&](int number) {
@@ -80,7 +80,7 @@ gcode::Coordinates Interpreter::work_offset() const {
   return at;
 }
 
-// The reader over the line: where it leads, and what it makes of the offsets.
+// Reads the line with the project's reader and returns the new position and offsets.
 Status Interpreter::follow(const std::string& text, const Modal& modal, gcode::Coordinates& place,
                            std::map<int, double>& parameters) const {
   const std::string whole_text = preamble(modal) + text;

@@ -5,9 +5,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kBetweenLines = 25ms;  // a sender that answers an ok sends the next line sooner
-constexpr auto kFirstMotion = 250ms;  // a sender that is slower sees its first line move after that
-constexpr double kReserve = 0.06;     // s of motion that the card has still, so that the rest is planned in time
+constexpr auto kBetweenLines = 25ms;  // a sender that reacts to ok sends the next line sooner
+constexpr auto kFirstMotion = 250ms;  // for a slower sender, the first line is executed after this time
+constexpr double kReserve = 0.06;     // s of motion left in the card when planning of the rest must begin
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// The lines of one motion, as they come: it ends where no more have come for a moment, and the planner comes to a rest
-// there before the card could run dry. Internal to the controller.
+// The lines of one motion, as they arrive. The motion ends when no more lines arrive for a moment; the planner then
+// plans a stop before the card could run out of commands. Internal to the controller.
 #pragma once
 
 #include <chrono>

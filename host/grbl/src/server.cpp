@@ -34,7 +34,7 @@ void Server::write(const std::string& text) {
   }
 }
 
-// As a serial adapter resets an Arduino when it is opened; but a job that is under way goes on.
+// Resets the controller, as opening a serial adapter resets an Arduino, but does not interrupt a job.
 void Server::greet(Controller& controller) {
   const State state = controller.state();
   const bool rests = state == State::kIdle || state == State::kAlarm || state == State::kCheck;

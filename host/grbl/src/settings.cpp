@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kAxes = "XYZ";
 constexpr double kMinute = 60;
 
-// Grbl's own defaults of what a machine file does not say, or says otherwise than by one number.
+// Grbl's defaults for settings that a machine file does not have, or does not express as one number.
 const std::map<int, double>& grbl_defaults() {
   static const std::map<int, double> kDefaults{{1, 25},  {2, 0},      {4, 0},    {5, 0},  {6, 0},
                                                {10, 1},  {12, 0.002}, {13, 0},   {21, 0}, {23, 0},
@@ -28,7 +28,7 @@ const std::map<int, double>& grbl_defaults() {
   return kDefaults;
 }
 
-// Settings that are switches, masks or milliseconds.
+// Whether a setting is an integer: a switch, a mask or a time in milliseconds.
 bool is_whole(int number) {
   constexpr std::array<int, 7> kFractions{11, 12, 24, 25, 27, 30, 31};
   return number < 100 && std::find(kFractions.begin(), kFractions.end(), number) == kFractions.end();
@@ -36,7 +36,7 @@ bool is_whole(int number) {
 
 bool is_shown_whole(int number) { return is_whole(number) || number == 30 || number == 31; }
 
-// The whole text as one finite number.
+// Converts the whole text to one finite number.
 std::optional<double> number_in(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
@@ -160,7 +160,7 @@ void Settings::set_startup(std::size_t n, const std::string& line) {
 void Settings::set_parameters(const std::map<int, double>& parameters) {
   std::map<int, double> kept;
   for (const auto& [number, value] : parameters) {
-    // G92 and the system in force are not kept, as in Grbl.
+    // G92 and the active coordinate system are not kept, as in Grbl.
     const bool lost = number >= gcode::parameter::kShifted && number <= gcode::parameter::kSystem;
     if (!lost && value != 0) kept[number] = value;
   }
@@ -225,7 +225,7 @@ bool Settings::read_line(const std::string& line) {
   return true;
 }
 
-// The old file stays whole where the new one cannot be written.
+// Writes a new file first, so the old one stays intact if the write fails.
 void Settings::write() {
   if (file_.empty()) return;
   const std::string fresh = file_ + ".new";

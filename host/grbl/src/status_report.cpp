@@ -5,7 +5,7 @@
 namespace trammel::grbl {
 namespace {
 
-// Reports between two WCO and between two Ov: report.c and config.h of Grbl 1.1h.
+// Number of reports between two WCO and between two Ov: report.c and config.h of Grbl 1.1h.
 constexpr unsigned kOffsetBusy = 30;
 constexpr unsigned kOffsetIdle = 10;
 constexpr unsigned kOverridesBusy = 20;

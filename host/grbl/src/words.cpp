@@ -11,7 +11,7 @@ namespace trammel::grbl {
 namespace {
 
 constexpr int kLargestCode = 255;
-constexpr int kLargestTool = 255;  // Grbl's
+constexpr int kLargestTool = 255;  // limit of Grbl
 constexpr std::string_view kPlainLetters = "FIJKLNPRST";
 constexpr std::string_view kNotNegative = "FNPTS";
 
@@ -25,7 +25,7 @@ bool join(Words& words, Group group) {
 struct GCode {
   int tenths;
   Group group;
-  bool to_reader = true;  // the project's reader gets it as it is
+  bool to_reader = true;  // passed to the project's reader unchanged
 };
 
 constexpr GCode kGCodes[]{{0, kMotionGroup},
@@ -67,7 +67,7 @@ constexpr GCode kGCodes[]{{0, kMotionGroup},
                           {590, kSystemGroup},
                           {610, kControl, false}};
 
-// What the axis words of a line with G`code` are for; none: it does not say.
+// The use of the axis words in a line with G`code`; kNone: not determined by this word.
 Words::Command command_of(int code, int hundredths) {
   if (code <= 3 || code == 38) return Words::Command::kMotion;
   if (code == 43 || code == 49) return Words::Command::kToolLength;
@@ -75,14 +75,14 @@ Words::Command command_of(int code, int hundredths) {
   return non_modal && hundredths == 0 ? Words::Command::kNonModal : Words::Command::kNone;
 }
 
-// Grbl knows some of these with a point: it calls the others unsupported, in place of error 23.
+// Whether Grbl has codes with this number and a decimal. It reports the others as unsupported instead of error 23.
 bool has_point(int code) {
   constexpr int kCodes[]{28, 30, 38, 43, 61, 90, 91, 92};
   return std::find(std::begin(kCodes), std::end(kCodes), code) != std::end(kCodes);
 }
 
 Status read_g(int code, int hundredths, Words& words) {
-  if (code == 49) hundredths = 0;  // as Grbl: G49.1 is G49
+  if (code == 49) hundredths = 0;  // as in Grbl, G49.1 is G49
   const auto of_code = [code](const GCode& one) { return one.tenths / 10 == code; };
   if (std::none_of(std::begin(kGCodes), std::end(kGCodes), of_code)) return Status::kUnsupported;
   if (const Words::Command command = command_of(code, hundredths); command != Words::Command::kNone) {
@@ -128,7 +128,7 @@ Status read_m(int number, Words& words) {
       return Status::kUnsupported;
   }
   words.outputs = words.outputs || group == kSpindle || group == kCoolant;
-  // Mist and flood may stand in one line: cncjs' client expects it, though Grbl 1.1h refuses it.
+  // Mist and flood may be in one line: cncjs' client expects it, although Grbl 1.1h refuses it.
   const auto has = [&](int m) { return std::count(words.m_codes.begin(), words.m_codes.end(), m) != 0; };
   const bool both = (number == 7 && has(8) && !has(7)) || (number == 8 && has(7) && !has(8));
   if (!both && !join(words, group)) return Status::kModalGroup;
@@ -218,7 +218,7 @@ void apply_words(const Words& words, Modal& modal) {
     if (m == 8) modal.flood = true;
     if (m == 9) modal.mist = modal.flood = false;
   }
-  const bool kept = !was_inverse_time && !modal.inverse_time;  // G93 leaves no feed behind
+  const bool kept = !was_inverse_time && !modal.inverse_time;  // a feed of G93 does not remain
   const double unit = modal.inverse_time ? 1 : modal.mm_per_unit();
   modal.feed = words.has('F') ? words.value('F') * unit : kept ? modal.feed : 0;
   if (words.has('S')) modal.speed = words.value('S');

@@ -11,7 +11,7 @@
 
 namespace trammel::grbl {
 
-// As Grbl has them, each a bit of Words::groups.
+// Grbl's modal groups; each is a bit of Words::groups.
 enum Group : unsigned {
   kNonModalGroup,
   kMotionGroup,
@@ -33,29 +33,29 @@ struct Words {
   enum class Command { kNone, kMotion, kNonModal, kToolLength };
 
   std::map<char, std::string> values;  // letters other than G and M, as written
-  std::vector<std::string> codes;      // for the project's reader
+  std::vector<std::string> codes;      // codes for the project's reader
   std::string axes;                    // letters of the axis words
-  Command command = Command::kNone;    // what the axis words are for
-  int motion = -1;                     // of the motion group, as Modal::motion
+  Command command = Command::kNone;    // the command that uses the axis words
+  int motion = -1;                     // code of the motion group, as in Modal::motion
   int non_modal = -1;                  // tenths: 40, 100, 280, 281, 300, 301, 530, 920, 921
   int program = -1;                    // 0, 2, 30
   bool tool_length = false;            // G43.1
   bool outputs = false;                // M3 .. M5, M7 .. M9
   bool system = false;                 // G54 .. G59
-  unsigned groups = 0;                 // bit n: Group n was met
+  unsigned groups = 0;                 // bit n: Group n occurred
   std::vector<int> g_codes;            // tenths
   std::vector<int> m_codes;
 
   bool has(char letter) const { return values.count(letter) != 0; }
   double value(char letter) const;
-  // Without those of axes.
+  // Letters of the values, without axis letters.
   std::string letters() const;
 };
 
-// Sign, digits, one point; no exponent. `at`: moved behind it.
+// Reads sign, digits and one point; no exponent. `at`: moved to the end of the number.
 bool read_number(std::string_view line, std::size_t& at, std::string& text);
 Status read_words(std::string_view line, std::string_view axes, Words& words);
-// G and M codes, F, S, T and G43.1's Z.
+// Applies G and M codes, F, S, T and Z of G43.1.
 void apply_words(const Words& words, Modal& modal);
 
 }  // namespace trammel::grbl

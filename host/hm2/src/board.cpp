@@ -9,7 +9,7 @@
 namespace trammel::hm2 {
 namespace {
 
-// Of the small spaces: places of their words of 16 bits.
+// Byte offsets of 16-bit words in the small spaces.
 constexpr std::size_t kHardwareAddress = 2;  // EEPROM, last byte first
 constexpr std::size_t kEepromName = 16;
 constexpr std::size_t kMicroseconds = 0;  // timer
@@ -19,10 +19,10 @@ constexpr std::size_t kReceivedUdp = 10;
 constexpr std::size_t kReceivedBad = 12;
 constexpr std::size_t kSent = 14;
 constexpr std::size_t kSentUdp = 16;
-constexpr std::size_t kProtocolVersion = 16;  // info, behind the name
+constexpr std::size_t kProtocolVersion = 16;  // info, after the name
 constexpr unsigned kLbp16Version = 3;
 
-// The driver makes its name of the first four characters: hm2_tram.0.
+// The driver uses the first four characters for its name: hm2_tram.0.
 constexpr char kName[] = "trammel";
 
 template <class Memory>

@@ -9,7 +9,7 @@
 namespace trammel::hm2 {
 namespace {
 
-constexpr std::uint32_t kRegisterBytes = 0x100;  // from a register of the step generators to the next
+constexpr std::uint32_t kRegisterBytes = 0x100;  // distance between two registers of the step generators
 
 driver::StepMode mode_of(std::uint32_t value) {
   return value == 1   ? driver::StepMode::kUpDown
@@ -47,7 +47,7 @@ std::uint32_t Hostmot2::read_accumulator(unsigned axis) {
   return steps_.accumulator(axis);
 }
 
-// The inputs, behind the pins of the step generators.
+// The inputs, after the pins of the step generators.
 std::uint32_t Hostmot2::read_pins() {
   if (inputs_ == 0) return 0;
   const std::uint32_t levels = card_.read_inputs() & ((std::uint32_t{1} << inputs_) - 1);
@@ -97,7 +97,8 @@ void Hostmot2::write_status(std::uint32_t value) {
 
 void Hostmot2::run_to(std::uint64_t clock) {
   steps_.run_to(std::min(clock, watchdog_.deadline()));
-  // The card may be some accesses beyond `clock`, and what came until then has yet to be taken.
+  // The card may be some accesses beyond `clock`, but datagrams that arrived by then must still be processed; so
+  // `clock` is compared.
   if (clock >= watchdog_.deadline()) bite("the driver has not written the watchdog in time");
   if (!steps_.trouble().empty() && !watchdog_.bitten()) bite(steps_.trouble());
   steps_.run_to(clock);

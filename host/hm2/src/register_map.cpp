@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint32_t kCookieValue = 0x55AACAFE;
 constexpr char kConfigName[9] = "HOSTMOT2";
 constexpr std::uint32_t kIdromType = 3;
-constexpr std::uint32_t kModules = 0x40;  // from the IDROM's begin
+constexpr std::uint32_t kModules = 0x40;  // offset in the IDROM
 constexpr std::uint32_t kPinTable = 0x200;
 
 // A module descriptor: three words.
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> constant_words(unsigned axes, std::uint32_t clock_hz)
   const std::uint32_t head[] = {kIdromType, kModules, kPinTable};
   std::memcpy(idrom, head, sizeof(head));
   put_text(idrom + 3, kBoardName);
-  // FPGA's size and pins (of no meaning), ports, pins, pins a port, both clocks, strides of instances and registers.
+  // FPGA size and pins (unused), ports, pins, pins per port, both clocks, strides of instances and registers.
   const std::uint32_t tail[] = {0, 0, 1, kPins, kPins, clock_hz, clock_hz, 4, 64, 0x100, 4};
   std::memcpy(idrom + 5, tail, sizeof(tail));
   std::uint32_t* entry = idrom + kModules / 4;

@@ -10,13 +10,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The longest sleep: how late a signal is noticed at most.
+// The longest sleep, and so the longest delay until a signal is noticed.
 constexpr auto kSleep = 50ms;
-// A driver that is silent for so long has gone; another one may come then. Far longer than any watchdog's time.
+// A driver that is silent for this time is considered gone, and another one may connect. Far longer than the time of
+// any watchdog.
 constexpr auto kSilence = 1s;
-// Behind a bite nothing moves, and a driver that was ended may be started anew at once.
+// After a bite nothing moves, and a restarted driver should be accepted soon.
 constexpr auto kSilenceBitten = 100ms;
-// A card that is further behind is not made to run faster than life afterwards.
+// A longer delay is not made up for by running faster than real time.
 constexpr double kMaxBehind = 0.5;  // s
 
 }  // namespace
@@ -30,7 +31,7 @@ Server::Server(Hostmot2& hostmot2, Board& board, UdpPort& port, Settings setting
       anchor_time_(Clock::now()),
       anchor_clock_(hostmot2.now()) {}
 
-// The card's clock at that time; time that the card cannot make up for is left out.
+// The card's clock at `time`. Time that the card cannot make up for is left out.
 std::uint64_t Server::clock_at(Clock::time_point time) {
   const double life = std::chrono::duration<double>(time - anchor_time_).count();
   const double behind = life - static_cast<double>(hostmot2_.now() - anchor_clock_) / settings_.clock_hz;
@@ -65,7 +66,7 @@ void Server::turn() {
 
 void Server::serve(const Datagram& datagram) {
   run_to(datagram.came);
-  // Of the driver's own making: the kernel's stamps do not know how late this process is.
+  // The gap is the driver's own: kernel time stamps do not depend on delays of this process.
   if (last_driver_ == datagram.from) {
     counts_.longest_gap = std::max<std::chrono::nanoseconds>(counts_.longest_gap, datagram.came - heard_);
   }
@@ -78,7 +79,7 @@ void Server::serve(const Datagram& datagram) {
   counts_.longest_answer = std::max<std::chrono::nanoseconds>(counts_.longest_answer, Clock::now() - datagram.came);
 }
 
-// The first one that comes is the driver, until it falls silent.
+// The first sender is the driver, until it falls silent.
 bool Server::admit(const Datagram& datagram) {
   if (driver_ && !(*driver_ == datagram.from)) {
     if (counts_.strangers++ == 0) {
@@ -95,7 +96,7 @@ bool Server::admit(const Datagram& datagram) {
   return true;
 }
 
-// Not while a driver loads, which has no second try for what it asks then: from the first motion on.
+// Datagrams are lost only after the first motion: a driver that is being loaded does not repeat its requests.
 bool Server::loses() {
   if (settings_.lose_percent == 0 || hostmot2_.steps().counts().streams == 0) return false;
   const bool lost = std::uniform_real_distribution<double>(0, 100)(random_) < settings_.lose_percent;
@@ -103,7 +104,7 @@ bool Server::loses() {
   return lost;
 }
 
-// Without a watchdog too nothing moves on without its driver.
+// Ends the motion of a silent driver even if the watchdog is off.
 void Server::look_for_silence(Clock::time_point now) {
   if (!driver_ || now - heard_ < (hostmot2_.bitten() ? kSilenceBitten : kSilence)) return;
   if (hostmot2_.moves()) hostmot2_.bite("the driver has fallen silent");

@@ -14,7 +14,7 @@ using driver::PositionStream;
 constexpr std::int64_t kPulse = std::int64_t{1} << 32;
 constexpr std::int64_t kHalf = kPulse / 2;
 constexpr unsigned kToStream = 32 - PositionStream::kFractionBits;
-// A stream reaches 2^30 pulses from its origin: before that it is closed, and the next one begins.
+// A stream reaches 2^30 pulses from its origin. It is closed and reopened at half of that.
 constexpr std::int64_t kFarthest = kPulse << 29;
 constexpr std::chrono::seconds kMargin{1};
 
@@ -22,7 +22,7 @@ std::uint64_t clocks_of(double seconds, std::uint32_t hz, std::uint64_t least) {
   return std::max(static_cast<std::uint64_t>(seconds * hz), least);
 }
 
-// Rounded down; the driver rounds clocks up, which gives the same number.
+// Rounded down. The driver rounds up to clocks, which gives the same number.
 std::chrono::nanoseconds time_of(std::uint32_t clocks, std::uint32_t hz) {
   return std::chrono::nanoseconds(std::uint64_t{clocks} * 1'000'000'000 / hz);
 }
@@ -43,7 +43,7 @@ StepGenerators::StepGenerators(driver::Card& card, CardTime& time)
   latch();
 }
 
-// What the card refuses ends the motion; a lost link ends the server.
+// A refusal of the card ends the motion; a lost link ends the server.
 template <class Call>
 void StepGenerators::guarded(Call call) {
   try {
@@ -109,7 +109,7 @@ void StepGenerators::run_to(std::uint64_t clock) {
   time_.run_to(clock);
 }
 
-// Begins with the fraction of a pulse that is left from the time before.
+// Begins with the fraction of a pulse that is left from the previous stream.
 void StepGenerators::open() {
   apply_times();
   for (unsigned n = 0; n < axes_; ++n) {
@@ -125,7 +125,8 @@ void StepGenerators::open() {
   const std::uint64_t before = time_.now();
   end_ = before;
   send_line();
-  // The line begins between its accesses: known to half of their time, which only the fraction depends on.
+  // The line begins at an unknown time during its accesses. The estimate is good to half of their duration and affects
+  // only the fraction.
   const std::uint64_t begin = before + (time_.now() - before) / 2;
   lines_[0].begin = begin;
   end_ = begin + lines_[0].clocks;
@@ -140,8 +141,8 @@ void StepGenerators::close() {
 
 void StepGenerators::read_counters() { counters_ = card_.read_snapshot().position; }
 
-// Of the next line: twice the longest pulse with its space at least, so that there is room for one. An axis that stands
-// needs none, whatever its times.
+// Clocks of the next line: at least twice the longest pulse with its space, so that there is room for one. An axis at
+// rest needs none, whatever its step times are.
 std::uint64_t StepGenerators::next_clocks() const {
   std::uint64_t clocks = slice_;
   for (unsigned n = 0; n < axes_; ++n) {
@@ -167,7 +168,7 @@ void StepGenerators::send_line() {
   stream_->send(targets, line.clocks);
 }
 
-// A line may have a pulse more than its share.
+// Limits the rates. One pulse is subtracted because rounding may add one to the line.
 StepGenerators::Rates StepGenerators::allowed_rates(std::uint64_t clocks) {
   Rates rates{};
   bool clamped = false;
@@ -188,7 +189,7 @@ void StepGenerators::stop() {
   if (!stream_) return;
   counts_.stale_ticks += stream_->stale_ticks();
   stream_.reset();
-  // The reaction to a fault is the card's: at once, or on a ramp.
+  // On a fault the card stops by itself, at once or on a ramp.
   if (card_.read_status().faulted) card_.wait_until_stopped(kMargin);
   card_.abort();
   while (card_.busy()) time_.run_to(time_.now() + driver::poll_interval(card_.identification().clock_hz));
@@ -200,7 +201,7 @@ void StepGenerators::stop() {
 void StepGenerators::clear_trouble() {
   guarded([&] {
     card_.clear_faults(kMargin);
-    // A cause that lasts cannot be cleared.
+    // A cause that is still active cannot be cleared.
     trouble_ = card_.read_faults() == 0 ? "" : card_.read_fault_text();
   });
 }

@@ -24,8 +24,8 @@ namespace {
 
 using namespace std::chrono;
 
-constexpr int kReceiveBytes = 1 << 20;  // room for some hundred periods, where the server is late
-// What the kernel's time stamp may be old; beyond that somebody has set the clock.
+constexpr int kReceiveBytes = 1 << 20;  // room for some hundred periods, in case the server is late
+// Greatest plausible age of a kernel time stamp; an older one means that the clock was set.
 constexpr nanoseconds kOldest = seconds(1);
 
 sockaddr_in socket_address(const Peer& peer) {
@@ -38,7 +38,7 @@ sockaddr_in socket_address(const Peer& peer) {
 
 Peer peer_of(const sockaddr_in& address) { return {address.sin_addr.s_addr, address.sin_port}; }
 
-// The stamp is of the wall's clock; its age is the same on every clock.
+// The stamp is in wall-clock time; its age is the same on every clock.
 steady_clock::time_point time_of_arrival(msghdr& message) {
   const auto now = steady_clock::now();
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {

@@ -15,7 +15,7 @@ namespace {
 
 namespace field = card_map::field;
 
-// Of a turn. Behind a stall many stand in the ring, and the status must go on meanwhile.
+// Per turn. After a stall many periods are in the ring, and the status must be updated while they are processed.
 constexpr unsigned kMostPeriods = 8;
 
 std::uint32_t cause_of(std::uint32_t faults) {
@@ -106,7 +106,7 @@ void Bridge::take(const trammel_period& period) {
 void Bridge::take_enabled(const trammel_period& period) {
   if (!stream_.is_open()) {
     if (!armed_ || stopped_) return;
-    // Behind a stop the time base takes its ramp to come back.
+    // After a stop the time base ramps back to full ratio first.
     if (look_->snapshot().ratio != driver::Card::kFullRatio) return;
     open();
   }
@@ -139,7 +139,7 @@ void Bridge::close(bool ramp) {
   });
 }
 
-// For a call that waits for the card: meanwhile the periods are taken, and the status goes on.
+// Runs a call that waits for the card; meanwhile periods are taken and the status is published.
 void Bridge::waiting(const std::function<void()>& call) {
   struct NoLonger {
     ~NoLonger() {
@@ -163,10 +163,10 @@ void Bridge::set_hold(bool hold) {
   holding_ = hold;
 }
 
-// Behind an under-run at rest. The ratio's way back is for what moves: LinuxCNC would have moved on meanwhile, too far
-// for a line.
+// Called after an under-run at rest. The ratio returns at once, because a ramp is only for motion: during the ramp
+// LinuxCNC would move too far ahead for one line.
 void Bridge::come_back_at_once() {
-  constexpr int kLooks = 100;  // of a card that takes 8 clocks
+  constexpr int kLooks = 100;  // polls; the card needs 8 clocks
   const std::uint32_t slew = card_.parts().registers.read(card_map::reg::kSlew);
   card_.set_slew_time(std::chrono::nanoseconds(0));
   for (int looks = 0; card_.read_snapshot().ratio != driver::Card::kFullRatio && looks < kLooks; ++looks) {
@@ -174,7 +174,7 @@ void Bridge::come_back_at_once() {
   card_.parts().registers.write(card_map::reg::kSlew, slew, "slew");
 }
 
-// Where the machine is enabled, nothing begins before it was disabled.
+// After a clear, an enabled machine must be disabled before a motion can start.
 void Bridge::clear() {
   if (!stopped_) return;
   try {
@@ -204,7 +204,7 @@ void Bridge::guarded(const std::function<void()>& call) {
     ++status_.refused;
     stopped_by(TRAMMEL_CAUSE_TARGET, error.what());
   } catch (const driver::StateError& error) {
-    // As a rule the link was so slow that the line was over when the card was looked at: at rest nothing is lost by it.
+    // Usually the link was so slow that the line had ended when the card was read. At rest nothing is lost.
     if (!stream_.is_open() || !stream_.at_rest() || inside_) return stopped_by(TRAMMEL_CAUSE_OTHER, error.what());
     ++status_.missing;
     close(true);

@@ -1,4 +1,4 @@
-// What the bridge tells: the status, notes, and the turns inside of a path.
+// Reports of the bridge: the status, notes, and the turns inside a path.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ bool Bridge::path_turn() {
   return path_wanted_ && !faulted && !(ended_ && ended_());
 }
 
-// They count while the machine is off.
+// Settings take effect only while the machine is off.
 void Bridge::take_settings() {
   if (stream_.is_open()) return;
   const auto settings = region_.new_settings();
@@ -52,10 +52,10 @@ void Bridge::take_settings() {
 void Bridge::publish() {
   status_.flags = 0;
   look_->look(status_);
-  if (watchdog_) card_.parts().watchdog.look();  // where nothing is sent, as in a hold
+  if (watchdog_) card_.parts().watchdog.look();  // when nothing is sent, as in a hold
   status_.time = monotonic_now();
   const driver::Status& card = look_->snapshot().status;
-  // The card has stopped, and no period has come that would have met it.
+  // The card has stopped, and no period has arrived that would have detected it.
   if (card.faulted && !stopped_ && !inside_) stopped_by_fault(look_->snapshot().faults);
   status_.state = stopped_            ? TRAMMEL_STOPPED
                   : stream_.is_open() ? TRAMMEL_STREAMING

@@ -7,8 +7,8 @@
 namespace trammel::linuxcnc {
 namespace {
 
-constexpr unsigned kPlaceLooks = 16;    // homed and valid change rarely: every so many looks
-constexpr double kSpeedSeconds = 2e-3;  // over which a speed is measured, at least
+constexpr unsigned kPlaceLooks = 16;    // homed and valid change rarely: they are read once per this number of looks
+constexpr double kSpeedSeconds = 2e-3;  // shortest time over which a speed is measured
 
 }  // namespace
 

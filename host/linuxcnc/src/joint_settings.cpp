@@ -11,7 +11,7 @@ namespace trammel::linuxcnc {
 namespace {
 
 constexpr double kSpeedReserve = 1.05;
-constexpr std::uint32_t kMostLead = 128;  // periods: half of what the ring holds
+constexpr std::uint32_t kMostLead = 128;  // periods: half of the ring's capacity
 
 std::chrono::nanoseconds given_or(std::uint32_t given, std::chrono::nanoseconds of_machine) {
   return given != 0 ? std::chrono::nanoseconds(given) : of_machine;

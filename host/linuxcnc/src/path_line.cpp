@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kMillimetresPerInch = 25.4;
 constexpr double kSecondsPerMinute = 60;
-// LinuxCNC's types of motion, as its interface numbers them.
+// LinuxCNC's types of motion, with the numbers of its interface.
 constexpr int kTraverse = 1;
 constexpr int kToolChange = 4;
 constexpr int kProbing = 5;
 constexpr int kIndexRotary = 6;
-// An arc whose ends lie closer together is a whole turn: the sums of G91 differ in their last digits.
+// An arc with ends closer than this is a full turn: positions summed by G91 differ in their last digits.
 constexpr double kSamePlace = 1e-9;
 
 bool is_linear(std::size_t letter) { return letter < 3 || letter > 5; }
@@ -53,7 +53,7 @@ std::string feed_word(const trammel_operation& operation) {
   return word_of('F', speed * kSecondsPerMinute);
 }
 
-// The axes that the machine has; of these the ones that move, or all of `always`.
+// Axis words of the axes that move, and of all axes in `always`. Throws if the machine lacks an axis that moves.
 std::string axis_words(const Pose& from, const Pose& end, const machine::Machine& machine, std::string_view always) {
   std::string words;
   for (std::size_t n = 0; n < kPoseLetters.size(); ++n) {
@@ -80,7 +80,7 @@ std::string line_motion(const trammel_operation& operation, const Pose& from, co
 
 struct Plane {
   const char* word;
-  std::size_t first;  // of its axes, in the order in which G2 is clockwise
+  std::size_t first;  // the plane's axes, in the order in which G2 is clockwise
   std::size_t second;
   std::size_t normal;
 };
@@ -105,7 +105,7 @@ std::string arc_motion(const trammel_operation& operation, const Pose& from, con
     end[plane.first] = from[plane.first];
     end[plane.second] = from[plane.second];
   }
-  // Negative numbers of turns run clockwise as the normal sees it.
+  // A negative number of turns is clockwise as seen along the normal.
   const bool clockwise = (operation.turns < 0) == (operation.normal[plane.normal] > 0);
   const std::int64_t turns = operation.turns < 0 ? -std::int64_t{operation.turns} : std::int64_t{operation.turns} + 1;
   const char always[] = {kPoseLetters[plane.first], kPoseLetters[plane.second], '\0'};
@@ -123,7 +123,7 @@ std::string arc_motion(const trammel_operation& operation, const Pose& from, con
 
 std::string path_number(double value) {
   if (!std::isfinite(value)) throw PathRefusal("a number that is not finite");
-  // Of the smallest double 1,074 digits behind the point, of the largest 309 before it.
+  // The smallest double has 1,074 digits after the point, the largest 309 before it.
   std::array<char, 1100> digits{};
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
   return {digits.data(), end.ptr};

@@ -12,15 +12,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::nanoseconds kPeriod = 1ms;  // in which LinuxCNC hands over one operation
-// s without an operation, and periods of the planner module, behind which none is waited for: LinuxCNC's task may be
-// late by some. Before the first motion nothing follows from it where the module itself stands still, up to a second.
+constexpr std::chrono::nanoseconds kPeriod = 1ms;  // time in which LinuxCNC passes on one operation
+// Waiting for operations ends after this time (s) and this number of periods of the planner module without one;
+// LinuxCNC's task may be late by some. Before the first motion, a module that is itself stalled extends the wait up to
+// one second.
 constexpr double kBetweenOperations = 0.03;
 constexpr std::uint64_t kBetweenPeriods = 30;
 constexpr double kLongestStall = 1;
-constexpr std::size_t kAhead = 100;  // operations beyond the planner's window, before a run begins
-// s of motion that the card has still when the run ends for want of operations, beside what a stop takes, which the
-// card's under-run hold keeps: the rest is planned in that time.
+constexpr std::size_t kAhead = 100;  // operations beyond the planner's window before a run begins
+// Motion left in the card (s) when the run ends for lack of operations; the rest is planned in this time. The duration
+// of a stop, which the card's under-run hold keeps in reserve, is added.
 constexpr double kReserve = 0.1;
 
 }  // namespace
@@ -39,12 +40,12 @@ bool PathLines::next(std::string_view& line) {
   return true;
 }
 
-// The planner holds back as many blocks as its window has: a run begins when there are some more.
+// The planner holds back as many blocks as its window has, so a run begins when there are more.
 bool PathLines::wait_for_operation() {
   const auto enough = static_cast<std::size_t>(server_.machine_.motion.window) + kAhead;
   while (server_.queue_.size() < (lines_ == 0 ? enough : 1)) {
     if (!may_wait()) break;
-    // Nobody else serves the card's watchdog and looks at what was asked for.
+    // During this wait, only this call serves the card's watchdog and pending requests.
     driver::serve_requests(server_.card_);
     server_.bus_.sleep(kPeriod);
   }
@@ -58,7 +59,8 @@ bool PathLines::may_wait() const {
   return server_.progress_->seconds_left() > kReserve + machine::hold_seconds(server_.machine_);
 }
 
-// Operations do. Where nothing was sent yet, a module that stands still says nothing of that.
+// Whether more operations are to be expected. Before anything is sent, a stalled module does not mean that there are
+// none.
 bool PathLines::still_come() const {
   const double clocks = static_cast<double>(server_.now_.time - server_.last_came_);
   const double since = clocks / server_.card_.identification().clock_hz;
@@ -66,7 +68,8 @@ bool PathLines::still_come() const {
   return since < (stalled && !server_.progress_->any_sent() ? kLongestStall : kBetweenOperations);
 }
 
-// A refused operation ends the run behind what stands before it. So does a probe: LinuxCNC waits for its end.
+// A refused operation ends the run after the operations before it. A probe ends the run too, because LinuxCNC waits for
+// its end.
 void PathLines::take(const trammel_operation& operation) {
   std::string motion;
   try {

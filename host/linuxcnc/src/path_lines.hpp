@@ -1,5 +1,5 @@
-// The operations of one run, as lines of G-code as they come: it ends where none has come for a moment, and the planner
-// comes to rest there before the card could run dry. Internal to the path server.
+// The operations of one run as lines of G-code, as they arrive. The run ends when no operation arrives for a moment;
+// the planner then plans a stop before the card could run out of commands. Internal to the path server.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace trammel::linuxcnc {
 
 class PathLines final : public gcode::LineSource {
  public:
-  // `from`: where the run begins.
+  // `from`: the start position of the run.
   PathLines(PathServer& server, const Pose& from) : server_(server), from_(from) {}
   bool next(std::string_view& line) override;
   const std::string& name() const override { return name_; }
@@ -28,7 +28,7 @@ class PathLines final : public gcode::LineSource {
   PathServer& server_;
   std::string name_ = "linuxcnc";
   Pose from_;
-  std::string modes_;                // that hold
+  std::string modes_;                // units and path control in force
   std::deque<std::string> pending_;  // lines to give next
   std::string given_;
   std::size_t lines_ = 0;

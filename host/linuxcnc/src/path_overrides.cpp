@@ -9,7 +9,7 @@
 
 namespace trammel::linuxcnc {
 
-// Of whoever moves the card otherwise nothing is known here: the full ratio is theirs.
+// Other users of the card expect the full ratio, and this server does not know their scales; so both ratios start at 1.
 void PathServer::begin_overrides() {
   feed_scale_ = rapid_scale_ = -1;
   for (const auto piece_class : {driver::PieceClass::kFeed, driver::PieceClass::kRapid}) set_ratio(piece_class, 1);
@@ -38,7 +38,8 @@ void PathServer::apply_overrides() {
   set_hold(queue_.paused() || (feed_scale_ <= 0 && rapid_scale_ <= 0));
 }
 
-// A scale of 0 is a hold where both have it; else pieces of this class nearly stand.
+// If both scales are 0, the card holds instead; if only this one is, pieces of its class get the smallest ratio and
+// almost stop.
 void PathServer::set_ratio(driver::PieceClass piece_class, double scale) {
   double& in_force = piece_class == driver::PieceClass::kFeed ? feed_scale_ : rapid_scale_;
   if (!std::isfinite(scale)) return;

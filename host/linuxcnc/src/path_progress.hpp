@@ -1,5 +1,5 @@
-// How far the card is in one run of the planner: which line it is at, and for how long what it was sent still lasts.
-// Internal to the path server. Not thread-safe.
+// Tracks the card's progress in one run of the planner: the current line, and the duration of the commands still in the
+// card. Internal to the path server. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@
 
 namespace trammel::linuxcnc {
 
-// What one of the card's queues was sent and has not done: at least so many seconds of it are left.
+// The time that is left in one of the card's queues, as a lower bound in seconds.
 class QueuedTime {
  public:
-  // Begins when the card's count of begun commands has come to `first`.
+  // Adds an entry that begins when the card's count of begun commands reaches `first`.
   void put(std::uint32_t first, std::size_t line, double seconds);
-  // `now`: s, by the card's clock.
+  // `now`: s, card time.
   void look(std::uint32_t begun, double now);
   double seconds_left() const { return under_way_ + waiting_; }
-  std::size_t line() const { return line_; }  // of the one that has begun last
+  std::size_t line() const { return line_; }  // line of the entry that has begun last
 
  private:
   struct Entry {
@@ -27,17 +27,17 @@ class QueuedTime {
     std::size_t line = 0;
     double seconds = 0;
   };
-  std::deque<Entry> entries_;  // that have not begun
+  std::deque<Entry> entries_;  // entries that have not begun
   std::size_t line_ = 0;
-  double seconds_ = 0;    // of the one under way
-  double begun_ = 0;      // when that was first seen
-  double under_way_ = 0;  // s left of it
-  double waiting_ = 0;    // s of `entries_`
+  double seconds_ = 0;    // duration of the current entry
+  double begun_ = 0;      // time at which the current entry was first seen
+  double under_way_ = 0;  // s left of the current entry
+  double waiting_ = 0;    // total s of `entries_`
 };
 
 class PathProgress final : public run::Observer {
  public:
-  // `clock_hz`: the card's. `most_override`: the largest ratio of planned to real time.
+  // `clock_hz`: clock of the card. `most_override`: the largest ratio of planned to real time.
   PathProgress(std::uint32_t clock_hz, double most_override) : clock_hz_(clock_hz), most_override_(most_override) {}
 
   void sending(const planner::PlannedBlock& block) override;
@@ -45,16 +45,17 @@ class PathProgress final : public run::Observer {
   void look(const driver::Snapshot& now);
 
   bool any_sent() const { return any_sent_; }
-  // Of the lines that the run has read, the one that has begun last; 0: none.
+  // Among the lines that the run has read, the one that has begun last; 0: none.
   std::size_t line() const { return geometry_.line(); }
-  // At least so much motion has the card still, s: a path needs its piece of feed, which may come with a later block.
+  // Lower bound of the motion left in the card, s. A path needs its feed piece, which may arrive with a later block, so
+  // this is the minimum of both queues.
   double seconds_left() const;
 
  private:
   double clock_hz_;
   double most_override_;
-  QueuedTime geometry_;  // a block each
-  QueuedTime feed_;      // a piece each
+  QueuedTime geometry_;  // one entry per block
+  QueuedTime feed_;      // one entry per feed piece
   std::uint32_t geometry_commands_ = 0;
   std::uint32_t feed_commands_ = 0;
   bool any_sent_ = false;

@@ -42,7 +42,7 @@ void PathQueue::take_one(const trammel_operation& operation) {
     case TRAMMEL_SET_POSE:
       barrier_ = operation;
       return;
-    default:  // of a later version: nothing to do
+    default:  // an operation of a later version: ignored
       return;
   }
 }

@@ -23,13 +23,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::nanoseconds kIdle = 1ms;  // between two looks at the ring
-constexpr double kWindow = 500;                  // operations: half a second of LinuxCNC's hand-over
-constexpr double kSamePulse = 0.75;              // pulses by which a pose may differ from where the card stands
+constexpr std::chrono::nanoseconds kIdle = 1ms;  // interval between two looks at the ring
+constexpr double kWindow = 500;                  // operations: half a second at LinuxCNC's rate
+constexpr double kSamePulse = 0.75;              // pulses by which a pose may differ from the card's position
 constexpr double kSpeedTime = 0.02;              // s over which a speed is measured
 constexpr std::string_view kRunName = "linuxcnc:";
 
-// Soft limits and work offsets belong to other coordinates than LinuxCNC's.
+// Removes soft limits and work offsets, because LinuxCNC uses other coordinates.
 machine::Machine without_limits(machine::Machine machine) {
   if (machine.kinematics.name != machine::kKinematics[0]) {
     throw std::invalid_argument(
@@ -96,7 +96,7 @@ void PathServer::serve(const std::function<bool()>& meanwhile) {
   end_overrides();
 }
 
-// While the card stands.
+// Called while the card is at rest.
 void PathServer::idle() {
   if (queue_.front() != nullptr && !queue_.wants_stop()) return run_section();
   if (!queue_.barrier()) return;
@@ -105,7 +105,7 @@ void PathServer::idle() {
   report_.operations_done = queue_.done();
 }
 
-// LinuxCNC's coordinates, in whole pulses from the card's.
+// Sets LinuxCNC's coordinates, at a whole number of pulses from the card's.
 void PathServer::set_pose(const Pose& pose) {
   const gcode::Coordinates wanted = coordinates_of(pose, machine_, units_);
   const gcode::Coordinates here = position_->millimetres();
@@ -116,7 +116,7 @@ void PathServer::set_pose(const Pose& pose) {
   look();
 }
 
-// After each sleep of the bus.
+// Called after each sleep of the bus.
 void PathServer::turn() {
   look();
   apply_overrides();
@@ -160,7 +160,8 @@ void PathServer::measure_speed(const driver::Snapshot& now) {
   speed_at_ = here;
 }
 
-// LinuxCNC sees the probe and aborts the motion: the card has stopped by itself then, and its capture counts.
+// Requests a stop if one is wanted. After a probe's edge none is: LinuxCNC sees the probe and aborts the motion, but
+// the card has already stopped by itself, and its capture is the result.
 void PathServer::stop_if_asked(const driver::Snapshot& now) {
   probe_met_ = probe_met_ || (probing_ && now.status.probed);
   if (!progress_ || stop_asked_) return;
@@ -169,7 +170,8 @@ void PathServer::stop_if_asked(const driver::Snapshot& now) {
   card_.request_stop();
 }
 
-// LinuxCNC hands on where the run before has ended; a run that was stopped begins anew with its ticks.
+// Executes one run, which begins at the end of the previous one. It continues with the tick counts of that run; after a
+// stopped run the counts start anew.
 void PathServer::run_section() {
   progress_ = std::make_unique<PathProgress>(card_.identification().clock_hz, machine_.motion.max_override);
   under_way_.clear();
@@ -203,7 +205,7 @@ void PathServer::run_section() {
   end_section();
   look();
   if (now_.status.faulted) throw driver::FaultError(card_.read_faults(), card_.read_fault_text());
-  // A hold or a ratio that was asked for in the last moment.
+  // Serves a hold or ratio request made at the last moment.
   driver::serve_requests(card_);
 }
 
@@ -224,7 +226,7 @@ void PathServer::note_end(const run::Outcome& outcome) {
   ++report_.probes;
 }
 
-// `text` may begin with the place in the run's lines, which mean nothing to LinuxCNC.
+// `text` may begin with the position in the run's lines, which means nothing to LinuxCNC and is removed.
 void PathServer::refuse(std::int32_t id, const std::string& text) {
   const std::size_t place = text.rfind(kRunName, 0) == 0 ? text.find(": ") : std::string::npos;
   queue_.refuse();
@@ -245,7 +247,7 @@ void PathServer::write_status(trammel_status& status) const {
   status.refusals = report_.refusals;
   status.refusal = report_.refusal;
   if (report_.refusals != 0) std::copy(std::begin(report_.text), std::end(report_.text), std::begin(status.text));
-  // A card that stands is not at the path's end while operations wait for their run.
+  // A card at rest is not at the path's end while operations wait for their run.
   status.flags &= ~std::uint32_t{TRAMMEL_STATUS_AT_REST};
   if (!progress_ && queue_.empty() && !now_.status.busy) status.flags |= TRAMMEL_STATUS_AT_REST;
 }

@@ -55,7 +55,7 @@ Region::Region(const std::string& name, const std::string& folder)
   }
 }
 
-// The file stays: a module that is attached goes on with it, and the next owner takes it over.
+// The file is kept: an attached module continues to use it, and the next owner takes it over.
 Region::~Region() {
   ::munmap(memory_, sizeof(trammel_region));
   ::close(file_);
@@ -90,9 +90,9 @@ void Region::attach() {
   if ((hal && other(memory_->version_hal)) || (planner && other(memory_->version_planner))) {
     fail("LinuxCNC's modules have another version of it; install those of this version");
   }
-  // A module that attaches in this moment counts its own `head`, and stores it again in its next period.
+  // A module that attaches at this moment keeps its own `head`, and stores it again in its next period.
   if (!hal && !planner) std::memset(static_cast<void*>(memory_), 0, sizeof(trammel_region));
-  memory_->status_sequence += memory_->status_sequence & 1U;  // of an owner that died while it wrote
+  memory_->status_sequence += memory_->status_sequence & 1U;  // odd if an owner died while it wrote
   memory_->period_tail = __atomic_load_n(&memory_->period_head, __ATOMIC_ACQUIRE);
   woken_ = __atomic_load_n(&memory_->wake, __ATOMIC_ACQUIRE);
   timespec now{};
@@ -119,7 +119,7 @@ void Region::wait(std::chrono::nanoseconds longest) {
 std::optional<trammel_period> Region::take_period() {
   const std::uint64_t head = __atomic_load_n(&memory_->period_head, __ATOMIC_ACQUIRE);
   std::uint64_t tail = memory_->period_tail;
-  // Never more than there are slots, but behind a module that has begun anew.
+  // A larger difference than the number of slots occurs only after a restart of the module.
   if (head - tail > TRAMMEL_PERIODS) tail = head - 1;
   if (head == tail) return std::nullopt;
   const trammel_period period = memory_->periods[tail % TRAMMEL_PERIODS];

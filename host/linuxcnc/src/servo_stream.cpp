@@ -11,13 +11,13 @@ namespace {
 
 using driver::PositionStream;
 
-constexpr double kMostCorrection = 0.002;  // of a period: what a speed differs by
-constexpr double kMeanPeriods = 64;        // over which the number of queued periods is averaged
-constexpr double kFullError = 0.5;         // periods at which the whole correction is made
+constexpr double kMostCorrection = 0.002;  // fraction of a period, and so the largest relative change of a speed
+constexpr double kMeanPeriods = 64;        // periods over which the number of queued periods is averaged
+constexpr double kFullError = 0.5;         // error in periods at which the full correction is applied
 constexpr std::chrono::nanoseconds kLook = std::chrono::milliseconds(1);
-constexpr std::uint64_t kSpare = 2;  // periods more than the lead from which on a resting one is left out
+constexpr std::uint64_t kSpare = 2;  // a period at rest is omitted when the queue exceeds the lead by more than this
 
-// As the driver rounds.
+// Rounds as the driver does.
 std::int64_t nearest_pulse(std::int64_t target) {
   return (target + PositionStream::kPulse / 2) >> PositionStream::kFractionBits;
 }
@@ -42,7 +42,7 @@ void ServoStream::open(const ServoSettings& settings, const Pulses& from) {
   if (record_ != nullptr) record_->opened(card_.read_snapshot().time, from);
 }
 
-// The period's own, those that never came, and what brings the card's lead back.
+// Duration of the period's line: its own, that of periods that never arrived, and the correction of the lead.
 std::int64_t ServoStream::duration_of(const trammel_period& period, std::uint64_t periods) {
   const double wanted = settings_.lead - kFullError;
   const double error = std::clamp((wanted - mean_ahead_) / kFullError, -1.0, 1.0);
@@ -50,7 +50,8 @@ std::int64_t ServoStream::duration_of(const trammel_period& period, std::uint64_
   return std::llround(nominal * (1 + kMostCorrection * error));
 }
 
-// Each one left out is one less in the queue when the next one comes. In a hold the queue stays as it is.
+// Whether the period can be omitted. Each omitted period makes the queue shorter by one when the next one arrives. In a
+// hold the queue does not change.
 bool ServoStream::can_skip(bool moves, bool held) {
   if (moves || !resting_) return false;
   if (held) return ahead_ >= settings_.lead;
@@ -93,8 +94,9 @@ void ServoStream::close() {
   note_end();
 }
 
-// The stream is left without a period: the card goes on along its last line for `stale_periods`, and then ramps down
-// with a fault, which is no one's but ours. In a hold no period is missing, and an abort moves nothing.
+// Leaves the stream without a period: the card continues its last line for `stale_periods`, and then ramps down with a
+// fault. This fault is expected, and cleared here. In a hold no period is missing, so the card is aborted, which moves
+// nothing.
 void ServoStream::end_on_ramp() {
   stream_.reset();
   const auto deadline = std::chrono::seconds(2);
@@ -106,7 +108,7 @@ void ServoStream::end_on_ramp() {
       card_.bus().sleep(kLook);
     }
   } catch (const driver::FaultError&) {
-    // It came while the hold was on its way.
+    // The fault occurred while the hold was being set.
   }
   card_.wait_until_stopped();
   const std::uint32_t faults = card_.read_faults();

@@ -1,5 +1,5 @@
-// Entries of a machine file that are no numbers, and names that are none. Each function throws a MachineError with file
-// and line.
+// Reads entries of a machine file that are not numbers, and refuses unknown names. Each function throws a MachineError
+// with file and line.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace trammel::machine {
 
-// `key` of `table` ("axis.x.") is none of `names`.
+// Refuses `key` of `table` ("axis.x."), which is not one of `names`.
 [[noreturn]] void refuse_key(const Source& source, const toml::value& value, const std::string& table,
                              const std::string& key, const std::vector<std::string>& names);
 
-// The value, when it is one of `words`.
+// The value, which must be one of `words`.
 std::string word(const Source& source, const std::string& path, const toml::value& value,
                  const std::vector<std::string>& words);
 

@@ -56,7 +56,7 @@ void check_ramps(const std::string& where, const Machine& machine) {
                     "ramp at 1 MHz: is {}?",
                     where, what, reached, seconds, kLongest, unit_of));
   };
-  // With CoreXY a motion along X or Y moves each motor as far as the axis: the lesser limit holds.
+  // With CoreXY a motion along X or Y moves each motor by the same distance as the axis, so the lower limit applies.
   const JointLimits& motor = machine.kinematics.motor;
   const bool motors = machine.kinematics.name == "corexy";
   for (const MachineAxis& axis : machine.axes) {

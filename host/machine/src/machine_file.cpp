@@ -1,4 +1,4 @@
-// Machine files: TOML in, Machine out.
+// Converts machine files from TOML to Machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ constexpr std::array<MotionEntry, 6> kMotionEntries = {{
     {"stale_periods", &MotionSettings::stale_periods, 0, 65535, true},
 }};
 
-// A bare key of TOML has no point: G59.1 is g59_1.
+// A bare key of TOML cannot contain a point: G59.1 is g59_1.
 constexpr std::array<const char*, kCoordinateSystems> kSystems = {"g54", "g55",   "g56",   "g57",  "g58",
                                                                   "g59", "g59_1", "g59_2", "g59_3"};
 
@@ -119,7 +119,7 @@ void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& 
   refuse_key(source, value, table, key, axis_entries());
 }
 
-// Entries of one table [axis.x]. `place` is where their rules with each other are reported.
+// Sets the entries of one table [axis.x]. `place`: reported for an error that concerns several entries.
 void set_axis(const Source& source, MachineAxis& axis, const std::string& name, const toml::table& table,
               const toml::value& place) {
   const std::string path = "axis." + name + ".";
@@ -207,7 +207,7 @@ unsigned tool_number(const Source& source, const std::string& key, const toml::v
   return number;
 }
 
-// Those of the machine's axes, which are known by now.
+// Tool offsets are for the machine's axes, which must be set before.
 void set_tools(const Source& source, Machine& machine, const toml::table& table) {
   for (const auto& [key, value] : table) {
     const unsigned which = tool_number(source, key, value);
@@ -286,7 +286,7 @@ MachineAxis read_axis(const Source& source, const std::string& name, const toml:
   return axis;
 }
 
-// toml11's messages are several lines; the first says what, the location says where.
+// toml11's messages have several lines; only the first describes the error, and its location is added separately.
 std::string first_line_of(const std::exception& error) {
   std::string what = error.what();
   what = what.substr(0, what.find('\n'));
@@ -297,7 +297,7 @@ std::string first_line_of(const std::exception& error) {
 }
 
 toml::value parse(const Source& source, const std::string& text) {
-  // Tables in tables are two deep.
+  // A machine file has two levels of tables.
   constexpr std::size_t kDeepest = 16;
   if (text.size() > kLongestMachineText) {
     refuse(fmt::format("{}more than {} bytes", source.at_line(1), kLongestMachineText));
@@ -331,7 +331,7 @@ void check_top_level(const Source& source, const toml::table& root) {
   }
 }
 
-// The table [name], or nothing where it is missing or empty.
+// The table [name], or null if it is missing or empty.
 const toml::table* find_table(const toml::table& root, const char* name) {
   const auto found = root.find(name);
   return found != root.end() && !found->second.as_table().empty() ? &found->second.as_table() : nullptr;
@@ -339,7 +339,8 @@ const toml::table* find_table(const toml::table& root, const char* name) {
 
 std::size_t card_order(char letter) { return kAxisLetters.find(letter); }
 
-// The tables that a file and an override have alike, all but the axes, which are known by now. Whether there was one.
+// Sets the tables that a file and an override have in common: all except the axes, which must be set before. Returns
+// whether there was one.
 bool set_tables(const Source& source, Machine& machine, const toml::table& root) {
   bool any = false;
   const auto set = [&](const char* name, auto with) {

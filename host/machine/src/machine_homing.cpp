@@ -76,7 +76,7 @@ void set_entry(const Source& source, AxisHoming& homing, const std::string& tabl
   homing.sequence = static_cast<unsigned>(value.as_integer());
 }
 
-// What is wrong with an axis's homing, behind "homing.x: "; empty: nothing.
+// The error in the velocities of an axis's homing, to follow "homing.x: "; empty if there is none.
 std::string velocities_of(const MachineAxis& axis, const AxisHoming& homing) {
   if (homing.search_velocity == 0) return "search_velocity is missing, mm/s towards the switch, such as -20";
   const double search = std::abs(homing.search_velocity);

@@ -8,11 +8,11 @@
 
 namespace trammel::machine {
 
-// Tables of [homing]; the machine's axes are known. Throws MachineError.
+// Sets the tables of [homing]; the machine's axes must be set before. Throws MachineError.
 void set_homing(const Source& source, Machine& machine, const toml::table& axes);
 
-// Throws MachineError where an axis cannot home as it says: no input for its switch or index, no bound for its search,
-// velocities or places that the axis does not allow.
+// Throws MachineError if an axis cannot home as described: it has no input for its switch or index, no bound for its
+// search, or velocities or positions outside its limits.
 void check_homing(const Machine& machine);
 
 }  // namespace trammel::machine

@@ -21,7 +21,7 @@ using driver::CardRole;
 using driver::Role;
 
 struct AxisKey {
-  const char* name;  // behind "x_"
+  const char* name;  // after "x_"
   AxisRole role;
 };
 constexpr std::array<AxisKey, 6> kAxisKeys{{{"limit_minus", AxisRole::kLimitMinus},
@@ -31,7 +31,7 @@ constexpr std::array<AxisKey, 6> kAxisKeys{{{"limit_minus", AxisRole::kLimitMinu
                                             {"drive_fault", AxisRole::kDriveFault},
                                             {"in_position", AxisRole::kInPosition}}};
 constexpr const char* kBothLimits = "limit";
-constexpr const char* kSecondHome = "second_home";  // of an axis's second motor
+constexpr const char* kSecondHome = "second_home";  // home switch of an axis's second motor
 
 struct CardKey {
   const char* name;
@@ -57,7 +57,7 @@ std::vector<std::string> known_keys(const Machine& machine) {
   return names;
 }
 
-// The roles of a key; none: it is no role's. "x_limit" is a switch that serves both ends.
+// The roles of a key; empty for an unknown key. "x_limit" is a switch that serves both ends.
 std::vector<Role> roles_of(const Machine& machine, const std::string& key) {
   for (const CardKey& known : kCardKeys) {
     if (key == known.name) return {known.role};
@@ -132,7 +132,7 @@ OnLimit on_limit(const Source& source, const std::string& path, const toml::valu
   return text == "ramp" ? OnLimit::kRamp : text == "immediate" ? OnLimit::kImmediate : OnLimit::kAutomatic;
 }
 
-// What the inputs of a role are normally.
+// Whether the inputs of a role are normally closed.
 bool closed_of(const InputRole& role, std::size_t number) { return role.closed.value_or(is_limit(number)); }
 
 }  // namespace
@@ -206,7 +206,7 @@ std::uint32_t MachineInputs::inverted() const {
     if (closed_of(roles[n], n)) closed |= roles[n].inputs;
   }
   closed = (closed & ~told_open) | told_closed;
-  // A closed one is active when it opens.
+  // A normally closed input is active when it opens.
   return used() & (closed_level ? closed : ~closed);
 }
 

@@ -9,11 +9,11 @@
 
 namespace trammel::machine {
 
-// Entries of [inputs]; the machine's axes are known. Throws MachineError.
+// Sets the entries of [inputs]; the machine's axes must be set before. Throws MachineError.
 void set_inputs(const Source& source, Machine& machine, const toml::table& table);
 
-// Throws MachineError where an input's roles want it normally open and closed, or where a ramp is asked for that the
-// declared overtravel is too short for.
+// Throws MachineError if the roles of an input require both normally open and normally closed, or if a ramp is
+// requested for which the declared overtravel is too short.
 void check_inputs(const Machine& machine);
 
 }  // namespace trammel::machine

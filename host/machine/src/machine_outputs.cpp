@@ -64,7 +64,7 @@ constexpr std::array<FaultName, 9> kFaultNames = {{
     {"path_incomplete", card_map::field::kFaultPathIncomplete},
 }};
 
-// "p7": what M62 to M65 switch with P7; none where the key is another one.
+// "p7": the output that M62 to M65 switch with P7; none for another key.
 std::optional<std::size_t> numbered_of(const std::string& key) {
   for (std::size_t n = 0; n < kMaxOutputs; ++n) {
     if (key == fmt::format("p{}", n)) return n;
@@ -103,7 +103,7 @@ std::uint32_t faults_of(const Source& source, const std::string& path, const tom
   return faults;
 }
 
-// Letters of axes of the machine, in its order.
+// Reads letters of axes of the machine; the result is in the machine's order.
 std::string axes_of(const Source& source, const Machine& machine, const std::string& path, const toml::value& value) {
   std::string known;
   for (const MachineAxis& axis : machine.axes) {
@@ -171,12 +171,12 @@ void set_output(const Source& source, Machine& machine, const std::string& key, 
   }
 }
 
-// What entries must hold between them. What does not hold was brought by this table, so that one of them stands in it.
+// Rules between entries. A violation was introduced by this table, so at least one of the entries is in it.
 class Rules {
  public:
   Rules(const Source& source, const toml::table& table) : source_(source), table_(table) {}
 
-  // `why` begins behind the first of `keys`.
+  // In the message, `why` follows the first of `keys`.
   void require(bool holds, const std::vector<const char*>& keys, const std::string& why) const {
     if (holds) return;
     const auto key = std::find_if(keys.begin(), keys.end(), [this](const char* k) { return table_.count(k) != 0; });
@@ -184,7 +184,7 @@ class Rules {
     refuse(fmt::format("{}outputs.{}{}", place, keys.front(), why));
   }
 
-  // An output goes to one level.
+  // An output has only one safe level.
   void one_level(const char* on, std::uint16_t on_outputs, const char* off, std::uint16_t off_outputs) const {
     const unsigned both = unsigned{on_outputs} & off_outputs;
     unsigned output = 0;

@@ -8,10 +8,11 @@
 
 namespace trammel::machine {
 
-// Entries of [outputs]; the machine's axes are known. Throws MachineError, also where entries do not go together.
+// Sets the entries of [outputs]; the machine's axes must be set before. Throws MachineError, also for entries that
+// contradict each other.
 void set_outputs(const Source& source, Machine& machine, const toml::table& table);
 
-// Entries of [spindle], likewise.
+// Sets the entries of [spindle], under the same conditions.
 void set_spindle(const Source& source, Machine& machine, const toml::table& table);
 
 }  // namespace trammel::machine

@@ -11,14 +11,14 @@
 namespace trammel::machine {
 namespace {
 
-// Of the number in the text.
+// Position of the number in the text.
 struct NumberPlace {
   std::size_t begin = 0;
   std::size_t length = 0;
   std::size_t line = 0;
 };
 
-// In a text that parse_machine() has taken. toml11 tells line, column and length, all in bytes.
+// The text must be valid for parse_machine(). toml11 gives line, column and length, all in bytes.
 NumberPlace place_of_scale(const std::string& text, const std::string& name, char letter) {
   std::istringstream stream(text);
   const toml::value document = toml::parse(stream, name);

@@ -1,4 +1,4 @@
-// The table [spindle] of a machine file: what S sets.
+// The table [spindle] of a machine file: the effect of S.
 #include <fmt/format.h>
 
 #include <string>

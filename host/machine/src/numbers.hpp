@@ -1,4 +1,4 @@
-// Numbers of a machine file: what they may be, and where they stand.
+// Numbers of a machine file: their ranges and positions.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace trammel::machine {
 
-// Where a text came from, for messages: a file (with line numbers), or one override.
+// The source of a text, for messages: a file (with line numbers), or one override.
 struct Source {
   std::string name;
   bool has_lines;
@@ -16,8 +16,9 @@ struct Source {
   std::string at(const toml::value& value) const { return at_line(value.location().line()); }
 };
 
-// What a number must be, its unit, and why: the end of the refusal. The bounds lie beyond any machine, and within what
-// the card and the planner's doubles carry without loss; inside them no plan becomes endless.
+// The range of a number, its unit and the reason for the range, which ends the error message. The bounds are beyond any
+// real machine, and within the values that the card and the planner's doubles represent without loss; within them every
+// plan is finite.
 struct Range {
   double least;
   double most;
@@ -39,9 +40,9 @@ inline constexpr Range kDriveIdle{0, 680, "s", "a register holds 65,535 times 2^
 inline constexpr Range kChargePump{10, 1e5, "Hz", "charge pumps take some kilohertz"};
 inline constexpr Range kPlace{-2.2e12, 2.2e12, "mm", "2^31 pulses at the coarsest scale"};
 
-// The value, when it is a finite number; else a MachineError with file and line.
+// The value, if it is a finite number; otherwise throws a MachineError with file and line.
 double number(const Source& source, const std::string& path, const toml::value& value);
-// The same, within its range.
+// The same, and checks the range.
 double number(const Source& source, const std::string& path, const toml::value& value, const Range& range);
 
 }  // namespace trammel::machine

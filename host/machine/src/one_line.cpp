@@ -7,8 +7,8 @@ namespace {
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80; }
 
-// Bytes of the character that begins `text`, 0 where none does. RFC 3629: the shortest form alone, no surrogates, up to
-// U+10FFFF.
+// Size in bytes of the UTF-8 character at the beginning of `text`; 0 if it is not valid. By RFC 3629 only the shortest
+// form is valid, without surrogates, up to U+10FFFF.
 std::size_t character_size(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
   const std::size_t size = first < 0x80                     ? 1
@@ -44,7 +44,7 @@ std::string escaped(char c) {
 std::string one_line(std::string_view text, std::size_t most) {
   constexpr std::string_view kCut = "...";
   std::string result;
-  std::size_t before_cut = 0;  // of the result, where the cut would come
+  std::size_t before_cut = 0;  // size to which the result is cut
   while (!text.empty()) {
     const std::size_t size = character_size(text);
     const bool control = static_cast<unsigned char>(text[0]) < 0x20 || text[0] == '\x7f';

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kScanClocks = 64;
 
-// The filter of an axis's limits and a scan, s; none where it has no limit.
+// Filter time of an axis's limit switches plus a scan, s; none if it has no limit switch.
 std::optional<double> filter_of_limits(const Machine& machine, std::size_t axis) {
   using driver::AxisRole;
   using driver::Role;

@@ -16,7 +16,7 @@
 namespace trammel::machine {
 namespace {
 
-// Changed, missing and surplus letters between two words (Levenshtein).
+// Number of changed, missing and surplus letters between two words (Levenshtein).
 std::size_t changes(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -32,7 +32,7 @@ std::size_t changes(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// After the string that begins at `at`. One of a single line ends with its line, closed or not.
+// The position after the string that begins at `at`. A single-line string ends with its line, even if it is not closed.
 std::size_t skip_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const std::string_view three = quote == '"' ? "\"\"\"" : "'''";
@@ -56,7 +56,7 @@ std::size_t skip_string(std::string_view text, std::size_t at) {
 
 constexpr std::size_t kLongestMessage = 1000;
 
-// Closed at the end of the scope.
+// A file descriptor, closed at the end of the scope.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -77,7 +77,7 @@ bool is_close(char c) { return c == ']' || c == '}'; }
 }  // namespace
 
 std::string nearest(std::string_view wrong, const std::vector<std::string>& names) {
-  // Any longer and it is no slip of a name; the comparison takes the product of the two lengths.
+  // A longer text is not a misspelt name, and the comparison time is the product of the two lengths.
   constexpr std::size_t kMostLetters = 64;
   if (wrong.size() > kMostLetters) {
     return {};
@@ -96,7 +96,7 @@ std::string nearest(std::string_view wrong, const std::vector<std::string>& name
 
 std::size_t too_deep_line(std::string_view toml, std::size_t most) {
   std::size_t depth = 0;
-  std::size_t dots = 0;  // of one key
+  std::size_t dots = 0;  // dots of the current key
   std::size_t at = 0;
   while (at < toml.size()) {
     const char c = toml[at];
@@ -131,7 +131,7 @@ std::string text_of_file(const std::string& path) {
   if (::stat(path.c_str(), &status) != 0) {
     refuse(fmt::format("{}: cannot read the machine file: {}", path, std::strerror(errno)));
   }
-  // Looked at before it is opened: opening some devices does something.
+  // Checked before the file is opened, because opening some devices has side effects.
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) {
     refuse(fmt::format("{}: is {}, not a machine file", path, S_ISDIR(status.st_mode) ? "a directory" : "a device"));
   }

@@ -1,4 +1,4 @@
-// Text of machine files, and of messages about it. Internal to the library.
+// Reads the text of machine files, and prepares text for messages. Internal to the library.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,22 @@
 
 namespace trammel::machine {
 
-// The name that takes the fewest changes of a letter to become `wrong`, or nothing where none has half of its
-// letters.
+// The name that needs the fewest letter changes to become `wrong`, at most half of the letters of the longer one; empty
+// if there is none.
 std::string nearest(std::string_view wrong, const std::vector<std::string>& names);
 
-// The first line, from 1, on which brackets or dotted keys nest deeper than `most`; 0: none does. A TOML reader that
-// recurses would run out of stack on them.
+// The first line, from 1, on which brackets or dotted keys nest deeper than `most`; 0: none. A recursive TOML reader
+// would overflow its stack on such a text.
 std::size_t too_deep_line(std::string_view toml, std::size_t most);
 
-// Of a name or a text within a message.
+// Longest name or text within a message, bytes.
 inline constexpr std::size_t kLongestQuote = 80;
 
-// Throws a MachineError, its message made one line.
+// Throws a MachineError with the message converted to one line.
 [[noreturn]] void refuse(const std::string& message);
 
-// A little more than the longest text where the file is longer: a pipe may never end. Refuses what is no file or pipe.
+// Reads the file. If it is longer than the longest machine text, reads only a little more than that, because a pipe may
+// never end. Refuses anything except a file or a pipe.
 std::string text_of_file(const std::string& path);
 
 }  // namespace trammel::machine

@@ -9,9 +9,9 @@
 namespace trammel::panel {
 namespace {
 
-constexpr std::size_t kLargestNumber = 9'999'999;  // of an N word, as Grbl has it
+constexpr std::size_t kLargestNumber = 9'999'999;  // largest N word, as in Grbl
 
-// Bytes that the controller would take for real-time commands, wherever they stand.
+// Whether the controller would take the byte for a real-time command, at any position in a line.
 bool is_command(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return byte >= 0x80 || byte == '?' || byte == '!' || byte == '~' || byte == 0x18;

@@ -12,17 +12,17 @@ namespace trammel::panel {
 
 struct PanelSession::Request {
   std::string what;
-  std::int64_t clock = 0;  // the session's, ms, of the last state that the page had when it sent this
-  std::uint64_t id = 0;    // of a jog
-  std::size_t axis = 0;    // of the machine
+  std::int64_t clock = 0;  // session time in ms of the last state that the page had received when it sent this
+  std::uint64_t id = 0;    // number of the jog
+  std::size_t axis = 0;    // axis of the machine
   int way = 0;
   double step = 0;     // mm or degrees
-  double percent = 0;  // of the axis's max_velocity
-  int change = 0;      // of an override, percent
+  double percent = 0;  // percent of the axis's max_velocity
+  int change = 0;      // change of an override, percent
   bool hold = true;
   std::string text;
 
-  // Nothing for what is no object with "do", or has a value of another type.
+  // None if the message is not an object with "do", or has a value of a wrong type.
   static std::optional<Request> parse(std::string_view message);
 };
 

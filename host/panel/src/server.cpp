@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kStateEvery = std::chrono::milliseconds(50);
 constexpr auto kRequestTime = std::chrono::seconds(10);
-// A page that says nothing and answers no ping for so long has gone.
+// A page that sends nothing and answers no ping for this time is considered disconnected.
 constexpr auto kPageSilence = std::chrono::seconds(3);
 constexpr std::size_t kLongestMessage = std::size_t{1} << 18U;
 constexpr std::uint32_t kLongestHeader = 8192;
@@ -53,7 +53,7 @@ bool has_token(std::string_view target, std::string_view token) {
   return false;
 }
 
-// What handlers use. They end with its context, at the latest.
+// State shared by the handlers, which end with its context at the latest.
 class PanelServer::Shared {
  public:
   Shared(const ServerSettings& given, PanelSession& its_session)
@@ -74,7 +74,7 @@ class PanelServer::Shared {
   Clock::time_point stated{};
 };
 
-// The page's end.
+// The connection to the page.
 class PanelServer::PageLink : public std::enable_shared_from_this<PageLink> {
  public:
   PageLink(tcp::socket socket, Shared& shared) : stream_(std::move(socket)), shared_(shared) {}
@@ -98,13 +98,13 @@ class PanelServer::PageLink : public std::enable_shared_from_this<PageLink> {
     if (waiting_.size() == 1) write();
   }
   bool sends() const { return !waiting_.empty(); }
-  // Another page has come.
+  // Closes the connection because another page has connected.
   void replace() {
     ended_ = true;
     stream_.async_close({websocket::close_code::policy_error, "replaced"}, [self = shared_from_this()](error_code) {});
   }
 
-  std::uint64_t told = 0;  // number of the last note that it has
+  std::uint64_t told = 0;  // number of the last note sent to the page
 
  private:
   void read() {
@@ -132,7 +132,7 @@ class PanelServer::PageLink : public std::enable_shared_from_this<PageLink> {
   bool ended_ = false;
 };
 
-// One request and its answer.
+// One HTTP request and its answer.
 class PanelServer::Exchange : public std::enable_shared_from_this<Exchange> {
  public:
   Exchange(tcp::socket socket, Shared& shared) : stream_(std::move(socket)), shared_(shared) {

@@ -18,12 +18,12 @@ constexpr std::uint8_t kHold = '!';
 constexpr std::uint8_t kResume = '~';
 constexpr std::uint8_t kReset = 0x18;
 constexpr std::uint8_t kCancelJog = 0x85;
-constexpr int kHoming = 22;              // Grbl's setting
-constexpr unsigned kLinesChecked = 500;  // in one call of serve()
+constexpr int kHoming = 22;              // number of Grbl's setting
+constexpr unsigned kLinesChecked = 500;  // per call of serve()
 constexpr std::size_t kNotesKept = 50;
 constexpr auto kHomedFresh = std::chrono::milliseconds(500);
 constexpr double kMinute = 60;
-// mm or degrees, that a jog goes at most where the axis has no soft limit.
+// mm or degrees, largest distance of a jog if the axis has no soft limit.
 constexpr double kFarthest = 10'000;
 // Coordinates in a line have four decimals.
 constexpr double kGrid = 1e4;
@@ -39,7 +39,7 @@ PanelSession::PanelSession(grbl::MachineSide& machine, grbl::Settings& settings,
       homed_(machine.homed()),
       homed_at_(begun_),
       controller_(machine, settings, [this](const std::string& text) { hear(text); }) {
-  // Home has a button of its own; a machine that has not been homed is locked until it is, or is recovered.
+  // Home has its own button; a machine that has not been homed is locked until it is homed or unlocked by Recover.
   if (machine.can_home() && !settings.flag(kHoming)) settings.set(kHoming, 1);
 }
 
@@ -112,7 +112,7 @@ bool PanelSession::came_late(const Request& request, std::chrono::milliseconds l
   return milliseconds() - request.clock > longest.count();
 }
 
-// Whether the machine stands and may move; else a note says why not.
+// Whether the machine is at rest and may move; otherwise a note gives the reason.
 bool PanelSession::is_ready(const std::string& what) {
   if (controller_.state() == State::kAlarm) {
     note(fmt::format("{}: refused in an alarm. Recover or home first.", what), true);
@@ -138,7 +138,7 @@ bool PanelSession::take_load(const Request& request) {
     program_.unload();
     return false;
   }
-  if (program_.phase() != Program::Phase::kLoading) return true;  // said already
+  if (program_.phase() != Program::Phase::kLoading) return true;  // the reason was given before
   if (const auto reason = program_.finish_loading()) note(*reason, true);
   return true;
 }
@@ -149,7 +149,8 @@ void PanelSession::take_start() {
   check_.emplace(controller_.interpreter());
 }
 
-// As the controller would read it, so that nothing moves for a program that it would refuse in the middle.
+// Checks the lines as the controller would, so that no motion starts for a program that the controller would refuse in
+// the middle.
 void PanelSession::check_program() {
   if (!program_.checking()) return;
   for (unsigned n = 0; n < kLinesChecked; ++n) {
@@ -208,7 +209,7 @@ void PanelSession::stop() {
 void PanelSession::take_jog(const Request& request) {
   last_jog_ = std::max(last_jog_, request.id);
   if (jog_) return;
-  const bool jogs = controller_.state() == State::kJog;  // the last one's ramp
+  const bool jogs = controller_.state() == State::kJog;  // the previous jog is still ramping down
   if (request.axis >= machine_.machine().axes.size() || (!jogs && !is_ready("Jog"))) return;
   Jog jog;
   jog.id = request.id;
@@ -221,7 +222,7 @@ void PanelSession::take_jog(const Request& request) {
   serve_jog();
 }
 
-// "$J=...", or nothing where the axis stands at its soft limit.
+// The line "$J=...", or empty if the axis is at its soft limit.
 std::string PanelSession::jog_line(const Jog& jog) const {
   const machine::MachineAxis& axis = machine_.machine().axes[jog.axis];
   const double at = machine_.look().at[jog.axis];
@@ -268,7 +269,7 @@ void PanelSession::send(Sent kind, const std::string& line) {
   controller_.serve();
 }
 
-// One line at a time, so that none behind a line that is refused is under way.
+// Sends one line at a time, so that no line after a refused one has been sent.
 void PanelSession::feed_program() {
   while (program_.running() && sent_.empty() &&
          (controller_.state() == State::kIdle || controller_.state() == State::kRun)) {
@@ -293,7 +294,7 @@ void PanelSession::serve() {
 }
 
 void PanelSession::work() {
-  // Here alone, since homing within `meanwhile` would hear of nothing.
+  // Only here, because a homing that is started within `meanwhile` could not serve the page.
   if (!commands_.empty() && sent_.empty() && controller_.idle()) {
     const std::string command = commands_.front();
     commands_.pop_front();
@@ -361,14 +362,14 @@ void PanelSession::hear_message(const std::string& text) {
   }
 }
 
-// At once, so that no further line goes out.
+// Called at once, so that no further line is sent.
 void PanelSession::end_program(const std::string& reason) {
   if (program_.running()) note(fmt::format("{}: stopped at line {}.", program_.name(), line_));
   program_.end_check(reason);
   program_.stop(reason);
 }
 
-// A reset has ended what was under way.
+// A reset has ended all commands in progress.
 void PanelSession::reset_heard() {
   sent_.clear();
   if (controller_.state() != State::kAlarm) alarm_ = {};

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 bool is_rotary(char letter) { return letter >= 'A' && letter <= 'C'; }
 
-// 0.1 um: what a page shows has three decimals.
+// Rounded to 0.1 um: the page shows three decimals.
 double rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
 json finite(double value) { return std::isfinite(value) ? json(value) : json(); }

@@ -32,7 +32,7 @@ double MotionClock::Piece::rate_at(double update) const {
   return rate_ + update * acceleration_ + update * (update - 1) / 2 * jerk_;
 }
 
-// The first update, from `least` on, whose rate lies below a bound, or above; infinite where there is none.
+// The first update, from `least` on, whose rate is below `bound` (or above it); infinite if there is none.
 double MotionClock::Piece::first_beyond(double bound, double least, bool below) const {
   const auto beyond = [&](double update) { return below ? rate_at(update) < bound : rate_at(update) > bound; };
   if (beyond(least)) return least;
@@ -44,7 +44,7 @@ double MotionClock::Piece::first_beyond(double bound, double least, bool below) 
   } else {
     const double square = linear * linear - 2 * jerk_ * constant;
     if (square < 0) return INFINITY;
-    // Without the difference of two numbers that are nearly the same.
+    // Avoids the difference of two nearly equal numbers.
     const double sum = -(linear + std::copysign(std::sqrt(square), linear));
     roots[0] = sum / jerk_;
     if (sum != 0) roots[1] = 2 * constant / sum;
@@ -58,7 +58,7 @@ double MotionClock::Piece::first_beyond(double bound, double least, bool below) 
   return first;
 }
 
-// Ticks of so many whole updates at the rates that they have without a bound.
+// Ticks of `updates` whole updates, without the bounds of the rate.
 double MotionClock::Piece::sum(double updates) const {
   const double pairs = updates * (updates - 1) / 2;
   return kUpdate * (updates * rate_ + pairs * acceleration_ + pairs * (updates - 2) / 3 * jerk_);
@@ -93,12 +93,12 @@ std::uint64_t MotionClock::Piece::clocks_to(double tick) const {
 
 MotionSegment MotionClock::Piece::at(std::uint64_t clocks, std::uint64_t all) const {
   MotionSegment segment;
-  // Over before its first update: it has one rate, whatever acceleration it was sent with.
+  // A piece that ends before its first update has a constant rate; its acceleration has no effect.
   if (static_cast<double>(all) <= kUpdate) {
     segment.rate = rate_;
     return segment;
   }
-  const double update = static_cast<double>(clocks) / kUpdate - 0.5;  // an update's rate is that of its middle
+  const double update = static_cast<double>(clocks) / kUpdate - 0.5;  // an update's rate is the one at its middle
   if (update + 0.5 >= bound_from_ && update + 0.5 < bound_to_) {
     segment.rate = bound_rate_;
     return segment;
@@ -120,7 +120,8 @@ void MotionClock::piece(const driver::FeedCommand& piece) {
 void MotionClock::close(bool last) {
   const Piece& piece = pieces_.back();
   std::uint64_t clocks = piece.clocks_to(static_cast<double>(piece.end_tick()));
-  // The clocks of the swap count as the next piece's: on another path this one's acceleration would mean nothing.
+  // The clocks of the swap belong to the next piece, because on another path this piece's acceleration would be
+  // meaningless.
   waiting_.push_back({piece, piece.clock() + clocks});
   if (!last) clocks += kSwapClocks;
   clock_ = piece.clock() + clocks;
@@ -144,8 +145,8 @@ void MotionClock::emit_closed() {
     const Closed& now = waiting_.front();
     const Path& path = paths_.front();
     const std::uint64_t path_end = now.piece.clock() + now.piece.clocks_to(static_cast<double>(path.end_tick));
-    // Path and piece end together, but for a tick of rounding: a stretch of that would show the one's acceleration on
-    // the other's geometry.
+    // Path and piece end together, except for a tick of rounding. A segment of that tick would show the acceleration of
+    // one on the geometry of the other.
     const std::uint64_t piece_end = now.piece.end_tick();
     const bool together = std::max(path.end_tick, piece_end) - std::min(path.end_tick, piece_end) <= kRounding;
     const bool path_ends = together || path_end <= now.end_clock;
@@ -165,7 +166,7 @@ void MotionClock::emit_closed() {
 
 std::uint64_t MotionClock::clock_of(std::uint64_t tick) {
   const auto at = static_cast<double>(tick);
-  // A piece goes on for some clocks after its last tick: a tick of the next one may come in them.
+  // A piece continues for some clocks after its last tick, and a tick of the next piece may occur in them.
   while (pieces_.size() > 1 && pieces_[1].ticks_after(0) < at) pieces_.pop_front();
   return pieces_.front().clock() + pieces_.front().clocks_to(at);
 }

@@ -15,7 +15,7 @@ constexpr std::size_t kElement = 192 * 1024;  // bytes, a multiple of 3: only th
 
 struct PageStream::Deflate {
   z_stream z{};
-  // The best level takes four times as long for a hundredth of the size.
+  // Level 6: the best level takes four times as long for 1 % of the size.
   Deflate() {
     if (deflateInit(&z, 6) != Z_OK) throw std::runtime_error("zlib cannot begin a stream");
   }

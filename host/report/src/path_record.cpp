@@ -13,7 +13,7 @@ Kind kind_of(const planner::Block& block) {
 
 }  // namespace
 
-// Where a probe has cut a motion short, the next one begins elsewhere.
+// After a probe that has ended a motion early, the next one begins elsewhere.
 bool PathCoder::goes_on(const planner::Block& block) const { return !end_ || *end_ == block.start; }
 
 void PathCoder::put(const PathRecord& record) {

@@ -1,4 +1,4 @@
-// A block of the commanded path as the page has it. Internal to the writer.
+// A block of the commanded path in the format of the page. Internal to the writer.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace trammel::report {
 
 struct PathRecord {
   planner::Block block;
-  double speed = 0;  // mm/s, the highest planned
+  double speed = 0;  // mm/s, highest planned speed
   planner::SpeedLimit limit = planner::SpeedLimit::kNone;
   bool stop = false;
   std::uint64_t first_command = 0;
-  std::uint64_t ticks = 0;        // of all its commands
-  std::uint64_t step_clocks = 0;  // clocks in which it makes steps
+  std::uint64_t ticks = 0;        // ticks of all its commands
+  std::uint64_t step_clocks = 0;  // number of clocks with steps
 };
 
-// In the program's order.
+// Encodes the blocks in the program's order.
 class PathCoder {
  public:
   PathCoder(run::TextSink& sink, const machine::Machine& machine)
@@ -35,7 +35,7 @@ class PathCoder {
   PageStream stream_;
   std::size_t axes_;
   std::int64_t line_ = 0;
-  std::optional<planner::Pulses> end_;  // of the motion before
+  std::optional<planner::Pulses> end_;  // end of the previous motion
 };
 
 }  // namespace trammel::report

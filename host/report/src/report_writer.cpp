@@ -23,15 +23,15 @@
 namespace trammel::report {
 namespace {
 
-// Feed ticks of a path's command, and how its path ticks come from them.
+// The feed ticks of a path's command, and their relation to its path ticks.
 struct CommandTicks {
   std::uint64_t number = 0;
-  std::uint64_t begin = 0;     // feed ticks before it
-  std::uint64_t prescale = 0;  // 2^-40 path ticks a feed tick; 0: each is one
-  std::uint64_t last = 0;      // feed ticks that it has
+  std::uint64_t begin = 0;     // feed ticks before the command
+  std::uint64_t prescale = 0;  // 2^-40 path ticks per feed tick; 0: path ticks are feed ticks
+  std::uint64_t last = 0;      // feed ticks of the command
 };
 
-// The feed tick of a path tick: the prescaler is a pulse generator, which begins at one half.
+// The feed tick of a path tick: the prescaler is a pulse generator, whose phase begins at one half.
 std::uint64_t feed_tick(const CommandTicks& command, std::uint64_t path_tick) {
   if (command.prescale == 0) return command.begin + path_tick;
   const double tick =
@@ -39,7 +39,7 @@ std::uint64_t feed_tick(const CommandTicks& command, std::uint64_t path_tick) {
   return command.begin + std::min(static_cast<std::uint64_t>(tick), command.last);
 }
 
-// By axis: pulses of a motor for a mm of the axis, and mm of the axis that a pulse of the motor moves.
+// By axis: pulses of a motor per mm of the axis, and mm of the axis per pulse of the motor.
 std::string ratios_json(const kinematics::Kinematics& kinematics, std::size_t motor) {
   std::vector<double> pulses;
   for (std::size_t axis = 0; axis < kinematics.axes(); ++axis) {
@@ -91,7 +91,7 @@ class ReportWriter::State {
     if (point.first) times.varint(point.motion - point.begin);
     kept = point;
   }
-  // Offers a step to the map of times; `last` of a motion is always one of its points.
+  // Offers a step to the map of times; the last step of a motion is always one of its points.
   void anchor(const driver::PathStep& step) {
     const CommandTicks& command = commands.front();
     const TimeMap::Point point{clock.clock_of(feed_tick(command, step.tick)), step.cycle, new_stretch, stretch_begin};
@@ -121,33 +121,33 @@ class ReportWriter::State {
   TimeMap::Point kept;
   std::uint64_t motion_path = 0;
 
-  std::uint64_t blocks = 0;           // sent
-  std::deque<PathRecord> under_way;   // blocks whose steps have not all come
-  std::deque<CommandTicks> commands;  // of paths, likewise
+  std::uint64_t blocks = 0;           // blocks sent
+  std::deque<PathRecord> under_way;   // blocks with outstanding steps
+  std::deque<CommandTicks> commands;  // path commands with outstanding steps
   struct Stretch {
     std::uint64_t first;  // number of its first path
-    std::uint64_t begin;  // motion clock
+    std::uint64_t begin;  // motion clock at its begin
   };
-  std::deque<Stretch> stretches;  // between barriers, not yet begun
+  std::deque<Stretch> stretches;  // stretches between barriers that have not begun
   bool barrier_put = true;
-  std::uint64_t after_barrier = 0;  // motion clock
+  std::uint64_t after_barrier = 0;  // motion clock after the last barrier
   bool first_of_block = false;
 
-  std::uint64_t spacing;  // clocks between steps that the map of times is offered
+  std::uint64_t spacing;  // clocks between steps offered to the map of times
   std::uint64_t anchored = 0;
   bool new_stretch = false;
   std::uint64_t stretch_begin = 0;
   std::optional<driver::PathStep> last;
   std::optional<planner::Pulses> start;
 
-  std::uint64_t first_cycle = 0;  // of the steps in the page
+  std::uint64_t first_cycle = 0;  // first clock of the steps in the page
   std::uint64_t last_cycle = ~std::uint64_t{0};
   std::vector<std::int64_t> before;   // pulses before the window, by motor
   std::vector<std::uint64_t> beside;  // steps that are not in the page
   std::uint64_t clocks_before = 0;    // clocks with steps before the window
 };
 
-// The command that a step belongs to becomes the first; blocks before it are written.
+// Removes the commands before that of a step, and writes the blocks before it.
 void ReportWriter::State::enter(std::uint64_t command) {
   while (!commands.empty() && commands.front().number < command) commands.pop_front();
   if (commands.empty() || commands.front().number != command) {
@@ -197,7 +197,7 @@ void ReportWriter::sending(const planner::PlannedBlock& planned) {
 
 void ReportWriter::command(std::uint64_t number, const driver::Command& command) {
   State& state = *state_;
-  // A probe's own commands come before and behind its block's.
+  // A probe's own commands are before and after those of its block.
   if (std::holds_alternative<driver::ProbeCommand>(command) ||
       std::holds_alternative<driver::ProbeEndCommand>(command)) {
     return state.barrier();
@@ -234,7 +234,7 @@ void ReportWriter::path_step(const driver::PathStep& step) {
   if (!same_clock) {
     const std::optional<driver::PathStep> last = state.last;
     const bool behind_barrier = !state.stretches.empty() && step.command >= state.stretches.front().first;
-    // What stands at the end of a motion, and before a gap, is a point of the map too.
+    // The last step of a motion, and the last before a gap, are also points of the map.
     if (last && last->cycle != state.anchored && (behind_barrier || step.cycle - state.anchored >= state.spacing)) {
       state.anchor(*last);
     }
@@ -303,7 +303,7 @@ void ReportWriter::finish(const std::string& run, bool stopped) {
 std::string inside_script(const std::string& json) {
   std::string text;
   text.reserve(json.size());
-  // Only strings have these, and there \u003c is the same.
+  // '<' occurs only in strings, where \u003c has the same meaning.
   for (const char c : json) {
     if (c == '<')
       text += "\\u003c";

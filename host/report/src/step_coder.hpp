@@ -1,10 +1,10 @@
-// The steps of one axis as numbers: when each came to its shaper, and how much later it was at the pin. Not
+// Encodes the steps of one axis as numbers: the time of each step at its shaper, and its delay to the pin. Not
 // thread-safe.
 //
-// `steps`: for each step zigzag(interval - interval before) * 2 + (1 where the direction turns), as a varint; intervals
-// begin with 0 at clock 0, the direction with +1. At a constant speed that is a byte a step, and deflate leaves half of
-// it. `delays`: pairs of varints, the number of steps of one delay and the zigzag of the change to the next one; delays
-// begin with 0, and the last one holds to the end.
+// `steps`: for each step zigzag(interval - previous interval) * 2 + (1 if the direction changes), as a varint. The
+// first interval is relative to 0 and clock 0, the first direction to +1. At constant speed this is a byte per step,
+// which deflate halves. `delays`: pairs of varints, the number of steps with one delay and the zigzag of the change to
+// the next delay. Delays begin with 0, and the last one applies to the end.
 #pragma once
 
 #include <cstdint>
@@ -30,9 +30,9 @@ class StepCoder {
     direction_ = direction;
     on_their_way_.push_back({cycle, true});
   }
-  // A step that is not in the page.
+  // Records a step that is not in the page.
   void pass() { on_their_way_.push_back({0, false}); }
-  // The pin makes the steps in their order.
+  // Call for each step at the pin, which keeps the order of the steps.
   void pin_step(std::uint64_t cycle) {
     if (on_their_way_.empty()) return;
     const Step step = on_their_way_.front();
@@ -62,7 +62,7 @@ class StepCoder {
     std::uint64_t cycle;
     bool inside;
   };
-  std::deque<Step> on_their_way_;  // as many as a shaper holds
+  std::deque<Step> on_their_way_;  // steps in the shaper, at most as many as it holds
   std::int64_t delay_ = 0;
   std::uint64_t run_ = 0;
 };

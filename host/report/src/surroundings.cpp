@@ -50,7 +50,7 @@ void Surroundings::keep(Apart& axis, std::uint64_t cycle, double pulses) {
   axis.kept = rounded;
 }
 
-// The end is where all has come to rest, so there the difference itself counts and not the largest.
+// At the end everything is at rest, so the last difference is kept, not only the largest.
 void Surroundings::finish() {
   inputs_.finish();
   for (Apart& axis : apart_) {

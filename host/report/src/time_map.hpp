@@ -1,6 +1,5 @@
-// Where the motion clock is at which clock of the card: few points, so that straight lines between them are never more
-// than kTolerance clocks off at a point that was given. What overrides, holds and late hosts do to the motion shows
-// as its slope. Not thread-safe.
+// Maps the card's clock to the motion clock by a few points. Straight lines between them are within kTolerance clocks
+// of every given point. Overrides, holds and late hosts show as changes of slope. Not thread-safe.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +13,13 @@ class TimeMap {
  public:
   struct Point {
     std::uint64_t motion = 0;  // clocks
-    std::uint64_t cycle = 0;   // of the card
-    bool first = false;        // of a stretch: the motion clock stood before it
-    std::uint64_t begin = 0;   // of `first`: where the motion clock stood
+    std::uint64_t cycle = 0;   // clock of the card
+    bool first = false;        // first point of a stretch: the motion clock was stopped before it
+    std::uint64_t begin = 0;   // for `first`: the value at which the motion clock was stopped
   };
   static constexpr double kTolerance = 3;
 
-  // Points ascend. Calls keep(point) for each that is kept.
+  // Points must ascend. Calls keep(point) for each point that is kept.
   template <typename Keep>
   void add(const Point& point, const Keep& keep) {
     if (point.first || !last_) {
@@ -53,7 +52,7 @@ class TimeMap {
     least_ = -INFINITY;
     most_ = INFINITY;
   }
-  // The line from the point kept last to this one passes all between.
+  // Whether the line from the last kept point to this one is within the tolerance of all points between.
   bool fits(const Point& point) const {
     const double slope = motion(point) / cycles(point);
     return slope >= least_ && slope <= most_;

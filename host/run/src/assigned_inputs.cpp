@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kLook{20};
 
 bool is_active(driver::Card& card, unsigned input) { return (card.read_inputs() >> input & 1) != 0; }
 
-// Whether it came to be so.
+// Whether the input reached the level in time.
 bool wait_until(driver::Card& card, unsigned input, bool active, std::chrono::nanoseconds longest) {
   for (std::chrono::nanoseconds waited{0}; is_active(card, input) != active; waited += kLook) {
     if (waited >= longest) return false;

@@ -60,7 +60,7 @@ std::string card_axes(std::uint8_t axes) {
   return text;
 }
 
-// Of the axes in `letters`. Gives back those that had any, with blanks between.
+// Removes the soft limits of the axes in `letters`. Returns the letters of those that had any, separated by blanks.
 std::string drop_limits(machine::Machine& machine, const std::string& letters) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::string dropped;
@@ -165,9 +165,9 @@ std::string check_line_end(const machine::Machine& machine, const CardPlace& pla
 
 namespace {
 
-constexpr std::uint32_t kFarthest = 0x7FFFFFFF;  // pulses from an end, that the card can tell
+constexpr std::uint32_t kFarthest = 0x7FFFFFFF;  // largest distance in pulses that the card can represent
 
-// Of a motor that moves one axis alone; none where nothing limits it.
+// The range of a motor that moves one axis only; none if the axis has no limits.
 std::optional<driver::SoftRange> soft_range(const machine::Machine& machine, const Kinematics& kinematics,
                                             std::size_t motor, std::int32_t zero) {
   const kinematics::Joint& joint = kinematics.joint(motor);
@@ -191,7 +191,7 @@ std::optional<driver::SoftRange> soft_range(const machine::Machine& machine, con
 void guard_soft_limits(driver::Card& card, const machine::Machine& machine, const CardPlace& place) {
   if (!card.has_soft_limits()) return;
   const Kinematics kinematics(machine);
-  // A line takes a card with fewer axes than the machine has motors.
+  // A line can run on a card with fewer axes than the machine has motors.
   std::vector<std::optional<driver::SoftRange>> ranges(
       std::min<std::size_t>(kinematics.joints(), card.identification().axes));
   for (std::size_t n = 0; n < ranges.size(); ++n) {
@@ -232,7 +232,8 @@ std::uint8_t motors_with(const Kinematics& kinematics, unsigned named) {
   return motors;
 }
 
-// Where a motor's place was lost, only all of its axes together say where it stands.
+// Refuses to name only some of the axes of a motor whose place was lost: its position then follows only from the
+// coordinates of all of them.
 void check_shared(const machine::Machine& machine, const Kinematics& kinematics, const CardPlace& place,
                   std::uint8_t motors, unsigned named) {
   if (!place.was_set()) return;
@@ -244,7 +245,7 @@ void check_shared(const machine::Machine& machine, const Kinematics& kinematics,
   }
 }
 
-// The machine coordinates as they are to be counted. With all axes named none of before counts.
+// The new machine coordinates. If all axes are named, the previous ones have no effect.
 gcode::Coordinates counted_at(const machine::Machine& machine, const CardPlace& place, unsigned named,
                               const gcode::Coordinates& wanted) {
   if (named == all_axes(machine)) return wanted;
@@ -257,7 +258,8 @@ gcode::Coordinates counted_at(const machine::Machine& machine, const CardPlace& 
 
 }  // namespace
 
-// The motors are without a place until all is written: whoever ends before leaves a place that counts as lost.
+// The motors have no valid place until everything is written, so an interrupted call leaves a place that counts as
+// lost.
 void place_axes(driver::Card& card, const machine::Machine& machine, unsigned named, const gcode::Coordinates& at,
                 std::uint8_t homed) {
   const Kinematics kinematics(machine);
@@ -268,7 +270,7 @@ void place_axes(driver::Card& card, const machine::Machine& machine, unsigned na
   const gcode::Coordinates counted = counted_at(machine, place, named, at);
   if (!place.was_set()) keep_place(card, place, kScalesInPulses, 0);
   card.set_place(motors, false, false);
-  if (card.has_soft_limits()) card.set_soft_limits({});  // they were counted from the zero of before
+  if (card.has_soft_limits()) card.set_soft_limits({});  // they were relative to the previous machine zero
   for (std::size_t n = 0; n < kinematics.joints(); ++n) {
     if ((motors & bit(n)) == 0) continue;
     const auto away = static_cast<std::uint32_t>(kinematics.pulses(n, counted));

@@ -5,7 +5,7 @@
 
 namespace trammel::run {
 
-// Parts of a pulse in which an arc's centre is given.
+// An arc's centre is given in units of 1/kCentreScale pulse.
 constexpr double kCentreScale = 1U << card_map::constant::kCentreFractionBits;
 
 }  // namespace trammel::run

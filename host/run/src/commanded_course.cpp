@@ -8,7 +8,7 @@
 namespace trammel::run {
 namespace {
 
-// The commanded path of a block as points. In mm, where an arc is a circle whatever the joints make of it.
+// The commanded path of a block as points, in mm. In mm an arc is a circle for all kinematics.
 class CommandedPath {
  public:
   CommandedPath(const planner::Block& block, const kinematics::Kinematics& kinematics)
@@ -36,9 +36,9 @@ class CommandedPath {
     angle_ = std::atan2(start_[axis_y_] - centre_y_, start_[axis_x_] - centre_x_);
     pulses_ = radius_ * block.exact.sweep * std::max(kinematics.finest(axis_x_), kinematics.finest(axis_y_));
   }
-  double pulses() const { return pulses_; }  // length, about
+  double pulses() const { return pulses_; }  // approximate length
 
-  // The point at a share, 0 to 1, of the path.
+  // The point at the fraction `share` (0 to 1) of the path.
   Point at(double share) const {
     Point point{};
     for (std::size_t a = 0; a < axes_; ++a) point[a] = start_[a] + share * (end_[a] - start_[a]);
@@ -70,7 +70,7 @@ class CommandedPath {
   double pulses_ = 0;
 };
 
-// How well a block shows single pulses: an arc best, then a line of several axes, then any path.
+// Ranks how well a block shows single pulses: an arc best, then a line of several axes, then any path.
 int detail_rank(const planner::Block& block) {
   if (block.geometry != planner::Geometry::kLine) return 3;
   int moving = 0;
@@ -83,7 +83,7 @@ int detail_rank(const planner::Block& block) {
 CommandedCourse::CommandedCourse(const machine::Machine& machine) : kinematics_(machine) {}
 
 void CommandedCourse::planned(const planner::PlannedBlock& planned, std::uint64_t first) {
-  constexpr double kArcPoints = 64;  // a turn
+  constexpr double kArcPoints = 64;  // per turn
   constexpr double kMaxTurns = 100;
   const planner::Block& block = planned.block;
   if (!planner::moves(block)) return;
@@ -96,7 +96,7 @@ void CommandedCourse::planned(const planner::PlannedBlock& planned, std::uint64_
   const int rank = detail_rank(block);
   if (rank <= best_rank_) return;
   best_rank_ = rank;
-  detail_command_ = first + planned.feed + planned.beside;  // these come first
+  detail_command_ = first + planned.feed + planned.beside;  // feed pieces and commands without a path come first
   detail_.clear();
   const double length = std::min(path.pulses(), static_cast<double>(StepRecorder::kDetailPoints));
   for (double s = 0; s <= length; s += 1) detail_.push_back(path.at(s / path.pulses()));

@@ -17,7 +17,7 @@ namespace trammel::run {
 
 namespace {
 
-// Outputs that the card lacks would be switched in silence.
+// Without this check, the card would silently ignore outputs that it lacks.
 void check_outputs(driver::Card& card, std::uint16_t named) {
   if (named == 0 || !card_map::has_engine(card.identification().engines, card_map::engine::kPathCommands)) return;
   const unsigned outputs = card.outputs_present();
@@ -27,7 +27,7 @@ void check_outputs(driver::Card& card, std::uint16_t named) {
   throw driver::ArgumentError(fmt::format("output {} of the machine file: the card has {} outputs", highest, outputs));
 }
 
-constexpr unsigned kMapMinorOfPlace = 3;  // KEEPS_PLACE came with map 3.3
+constexpr unsigned kMapMinorOfPlace = 3;  // map 3.3 introduced KEEPS_PLACE
 void check_inputs(driver::Card& card, std::uint32_t used) {
   if (!card_map::has_engine(card.identification().engines, card_map::engine::kMachineInputs)) {
     throw driver::ArgumentError("inputs of the machine file: the card has no machine inputs (limits, buttons)");
@@ -77,20 +77,21 @@ void for_all_roles(const driver::Card& card, const Each& each) {
   }
 }
 
-// While it changes an input may seem active: none has a role then, nor a filter that keeps its level of before.
+// An input may seem active while the polarity changes. Therefore no input has a role at that time, and no filter
+// retains its previous level.
 void set_polarity(driver::Card& card, std::uint32_t inverted) {
   if (card.parts().registers.read(card_map::reg::kInputPolarity) == inverted) return;
   for_all_roles(card, [&](driver::Role role) { card.set_role(role, 0); });
   const unsigned present = card.inputs_present();
   for (unsigned n = 0; n < present; ++n) card.set_input_filter(n, std::chrono::nanoseconds(0));
   card.set_input_polarity(inverted);
-  constexpr std::uint64_t kSettled = 256;  // clocks: two scans of the filters and more
+  constexpr std::uint64_t kSettled = 256;  // clocks: more than two scans of the filters
   card.bus().sleep(driver::time_of(kSettled, card.identification().clock_hz));
 }
 
 }  // namespace
 
-// Roles come last: at a polarity that is not set yet an input may seem active.
+// Roles are written last: before the polarity is set, an input may seem active.
 void configure_inputs(driver::Card& card, const machine::Machine& machine) {
   const machine::MachineInputs& inputs = machine.inputs;
   const std::uint32_t used = inputs.used();
@@ -105,7 +106,7 @@ void configure_inputs(driver::Card& card, const machine::Machine& machine) {
   const machine::LimitStop stop = machine::limit_stop(machine);
   for (unsigned n = 0; n < machine.axes.size(); ++n) card.set_overtravel(n, stop.overtravel[n]);
   card.set_input_stops(input_stops(machine));
-  // The probe is the one of [probe].
+  // [probe] assigns the probe's input.
   const bool probe = machine.probe.input && machine.probe.touched_level;
   for_all_roles(card, [&](driver::Role role) {
     const std::uint32_t probes = probe ? std::uint32_t{1} << *machine.probe.input : 0;
@@ -120,7 +121,7 @@ std::chrono::nanoseconds milliseconds(double time) {
   return std::chrono::nanoseconds(std::llround(time * kNanosecondsOfAMillisecond));
 }
 
-// The motors that move with an axis of enable_axes, or all.
+// The motors that move with an axis of enable_axes; all motors if it is empty.
 std::uint8_t motors_with_drives(const machine::Machine& machine) {
   const kinematics::Kinematics kinematics(machine);
   unsigned axes = 0;
@@ -156,7 +157,8 @@ void configure_outputs(driver::Card& card, const machine::Machine& machine) {
         "outputs of the machine file: the card has none for drives (enable, brake, charge pump)");
   }
   driver::Health health;
-  // Not without a watchdog that runs: between two commands there is no host, and the chain must not open then.
+  // Does not require a running watchdog: between two commands there is no host, and the chain must not open then. A
+  // watchdog fault does open it.
   health.causes = outputs.disable_on | card_map::field::kFaultWatchdog;
   if (outputs.charge_pump != 0) health.pump_half_period = milliseconds(500 / outputs.charge_pump_hz);
   card.set_health(health);
@@ -183,7 +185,7 @@ void configure(driver::Card& card, const machine::Machine& machine) {
     settings.invert_second = joint.inverted;
     card.configure_axis(static_cast<unsigned>(i), settings);
   }
-  // None needs it on a card that was reset, as simulated ones are.
+  // A card after reset, such as a simulated one, needs no write if no axis keeps its place.
   if (std::any_of(machine.axes.begin(), machine.axes.end(), [](const auto& axis) { return axis.keeps_place; })) {
     set_keeps_place(card, machine);
   }

@@ -11,10 +11,10 @@ namespace trammel::run {
 
 class CsvWriter {
  public:
-  // `out` must outlive the writer; the header goes out with the first rows.
+  // `out` must outlive the writer. The header is written with the first rows.
   CsvWriter(TextSink& out, const char* header);
   void row(std::initializer_list<std::int64_t> values);
-  // Writes what is left.
+  // Writes the rest.
   void finish();
 
  private:

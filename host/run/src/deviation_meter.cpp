@@ -10,7 +10,7 @@
 namespace trammel::run {
 namespace {
 
-// Pulses that a line makes on an axis: its increment times its ticks, to the nearest.
+// Pulses of a line on an axis: its increment times its ticks, rounded to the nearest integer.
 double displacement(const driver::LineCommand& line, unsigned axis) {
   constexpr unsigned kBits = card_map::constant::kFractionBits;
   const std::int64_t increment = line.increment[axis];
@@ -71,7 +71,7 @@ void DeviationMeter::command(std::uint64_t number, const driver::Command& comman
     path.axis_count = 2;
     path.axes[0] = arc->axis_x;
     path.axes[1] = arc->axis_y;
-    // The gradient of F = A X^2 + B Y^2 - N, X in pulses, is CX X there.
+    // The gradient of F = A X^2 + B Y^2 - N at the start, with X in pulses, is CX X.
     const auto half_x = static_cast<double>(arc->half_x);
     const auto half_y = static_cast<double>(arc->half_y);
     path.target[0] = -to_double(arc->gradient_x) / (2 * half_x);

@@ -24,7 +24,7 @@ namespace {
 using driver::AxisRole;
 using driver::Role;
 
-constexpr double kSearchShare = 1.1;  // of max - min
+constexpr double kSearchShare = 1.1;  // fraction of max - min
 constexpr double kSquaringShare = 0.01;
 constexpr double kLeastSquaring = 2;  // mm
 constexpr double kMostSquaring = 25;  // mm
@@ -64,7 +64,7 @@ class Homing {
 
  private:
   using Group = std::vector<std::size_t>;
-  // Edges that count, by axis of the card.
+  // Final edges, by axis of the card: the positions of all motors at each edge.
   using Edges = std::map<unsigned, planner::Pulses>;
 
   const machine::AxisHoming& homing(std::size_t axis) const { return *machine_.axes[axis].homing; }
@@ -113,7 +113,7 @@ void Homing::check(const std::vector<std::size_t>& axes) const {
   }
 }
 
-// Motors of the axis that have a home switch of their own, the first one first.
+// Motors of the axis that have their own home switch, the first motor first.
 std::vector<unsigned> Homing::motors_with_a_switch(std::size_t axis) const {
   std::vector<unsigned> motors{static_cast<unsigned>(axis)};
   for (unsigned n = static_cast<unsigned>(machine_.axes.size()); n < kinematics_.joints(); ++n) {
@@ -122,7 +122,7 @@ std::vector<unsigned> Homing::motors_with_a_switch(std::size_t axis) const {
   return motors;
 }
 
-// At the search's velocity, over its distance.
+// The edge at the velocity and over the distance of the search; none if the role has no input.
 std::optional<WantedEdge> Homing::wanted(std::size_t axis, unsigned motor, AxisRole role) const {
   const std::uint32_t bits = inputs(role, motor);
   if (bits == 0) return std::nullopt;
@@ -137,7 +137,7 @@ std::optional<WantedEdge> Homing::wanted(std::size_t axis, unsigned motor, AxisR
   return edge;
 }
 
-// Of all switches of a group; `latch`: at latch_velocity, whose sign is that of the search.
+// The edges of all switches of a group, at `velocity_share` times the search velocity.
 std::vector<WantedEdge> Homing::all_wanted(const Group& group, bool to_active, double velocity_share) const {
   std::vector<WantedEdge> all;
   for (const std::size_t axis : group) {
@@ -153,7 +153,7 @@ std::vector<WantedEdge> Homing::all_wanted(const Group& group, bool to_active, d
   return all;
 }
 
-// The switch may be one of the limits.
+// The home switch may also be a limit switch.
 void Homing::ignore_limits(const Group& group) {
   for (const std::size_t axis : group) {
     if (!homing(axis).ignore_limits) continue;
@@ -162,8 +162,8 @@ void Homing::ignore_limits(const Group& group) {
   }
 }
 
-// The velocity that leads off a switch that is pressed. One that serves both ends is left as the card says that it was
-// reached.
+// The velocity that moves the axis off a pressed switch. If the switch serves both ends, the card's record of the end
+// that was reached determines the direction.
 double Homing::way_off(std::size_t axis, const driver::ActiveRoles& active) const {
   const double off = -homing(axis).search_velocity;
   const auto n = static_cast<unsigned>(axis);
@@ -180,7 +180,8 @@ double Homing::way_off(std::size_t axis, const driver::ActiveRoles& active) cons
   return plus ? -std::abs(off) : std::abs(off);
 }
 
-// Before the limits are ignored: the card's knowledge of sides ends with their roles.
+// Leaves the pressed switches. The directions are read before the limits' roles are removed, because the card then
+// forgets which end was reached.
 void Homing::leave_pressed(const Group& group) {
   const std::uint32_t levels = card_.read_inputs();
   const driver::ActiveRoles active = card_.read_roles();
@@ -219,7 +220,8 @@ void Homing::add_edges(Edges& edges, const std::vector<FoundEdge>& found) const 
   for (const FoundEdge& edge : found) edges[edge.wanted.motor] = edge.at;
 }
 
-// Off the switches, and slowly into them; or slowly off them. Then to the index.
+// Leaves the switches and approaches them slowly, or leaves them slowly, by the sign of latch_velocity. Then moves to
+// the index.
 Homing::Edges Homing::latch(const Group& group) {
   Edges edges;
   std::vector<WantedEdge> leave;
@@ -255,7 +257,7 @@ double Homing::coordinate(std::size_t axis, const planner::Pulses& at) const {
   return kinematics_.coordinates(at)[axis];
 }
 
-// One motor of an axis alone, by a line that the other motors have no part in.
+// Moves one motor of an axis by a line that does not move the other motors.
 void Homing::move_motor(std::size_t axis, unsigned motor, std::int64_t pulses) {
   gcode::Coordinates distance{};
   distance[axis] = static_cast<double>(pulses) / machine_.axes[axis].steps_per_mm;
@@ -269,7 +271,7 @@ void Homing::move_motor(std::size_t axis, unsigned motor, std::int64_t pulses) {
   position_.look(card_.read_snapshot());
 }
 
-// Each motor as far behind its own edge as the other.
+// Squares the axis: moves the second motor so that both are at the same distance from their own edges.
 void Homing::square(std::size_t axis, const Edges& edges) {
   const std::vector<unsigned> motors = motors_with_a_switch(axis);
   if (motors.size() < 2) return;
@@ -283,7 +285,7 @@ void Homing::square(std::size_t axis, const Edges& edges) {
   if (by != 0) move_motor(axis, second, by);
 }
 
-// Machine zero from the edges; a motor is homed when all of its axes are.
+// Sets machine zero from the edges. A motor is homed when all of its axes are.
 void Homing::place(const Group& group, const Edges& edges) {
   unsigned named = 0;
   unsigned done = 0;
@@ -343,7 +345,7 @@ std::vector<HomedAxis> Homing::run(const std::vector<std::size_t>& axes) {
   return all;
 }
 
-// They are not homed until they have come to their edges.
+// Marks the axes as not homed, until they have found their edges.
 void Homing::forget(const std::vector<std::size_t>& axes) {
   unsigned named = 0;
   for (const std::size_t axis : axes) named |= 1U << axis;
@@ -355,7 +357,7 @@ void Homing::forget(const std::vector<std::size_t>& axes) {
   if (homed != 0) card_.set_place(homed, true, false);
 }
 
-// Soft limits hold for homed axes alone.
+// Restores the inputs, and the soft limits of homed axes only.
 void Homing::restore() {
   for (unsigned unit = 0; unit < card_.captures_present(); ++unit) card_.stop_capture(unit);
   configure_inputs(card_, machine_);
@@ -382,7 +384,7 @@ std::vector<HomedAxis> home(driver::Card& card, const machine::Machine& machine,
     try {
       homing.restore();
     } catch (const driver::Error&) {
-      // The first error says more: the link that failed, or what stopped the card.
+      // Report the first error: it names the failed link or the reason of the stop.
     }
     throw;
   }

@@ -12,7 +12,7 @@ RunBegin begin_of(const RunSettings& settings, const Plan& plan) {
 
 std::optional<RunSettings::Place> place_of(const RunBegin& begin, const driver::Rest& rest,
                                            const std::array<std::int32_t, card_map::kMaxAxes>& zero) {
-  // In the silence the ticks say where the path is, not the axes.
+  // During the silent piece the axes do not move, so the ticks describe the path and not the position of the axes.
   if (rest.geometry_begun == 0 || (begin.silent && rest.feed_begun <= 1)) return begin.place;
   if (!rest.exact()) return std::nullopt;
   RunSettings::Place place;

@@ -16,21 +16,22 @@ namespace reg = card_map::reg;
 
 namespace {
 
-constexpr double kLinesAhead = 24;        // that full speed needs, about
-constexpr std::uint64_t kMinTicks = 512;  // of a line: more than a decode takes, and than the card's reserve
+constexpr double kLinesAhead = 24;        // approximate number of lines ahead at full speed
+constexpr std::uint64_t kMinTicks = 512;  // per line: more than the decoding time and the card's reserve
 constexpr double kFractionOfQueue = 0.5;
 constexpr int kLinesAtOnce = 2;
 
-// More than twice what a stop takes at this ratio, so that an under-run would end when they are there, and some time.
+// Feed ticks to send ahead: more than two stop distances at this ratio, so that an under-run hold would end when they
+// are queued, plus kAheadSeconds and the reserve.
 double ticks_ahead(const JogPath& path, const driver::CardTiming& card, double ratio) {
   constexpr double kStops = 2.2;
   constexpr double kReserve = 4 * card_map::constant::kUnderrunReserveTicks;
-  double rate = 0;  // ticks a clock
+  double rate = 0;  // ticks per clock
   for (const driver::FeedCommand& piece : path.pieces) rate = std::max(rate, static_cast<double>(piece.rate) * 0x1p-64);
   return kStops * path.stop_distance * ratio * ratio + Jog::kAheadSeconds * card.clock_hz * rate * ratio + kReserve;
 }
 
-// So that what is sent ahead fits well into the queue.
+// Feed ticks of a line, chosen so that the lines sent ahead fit well into the queue.
 std::uint64_t line_ticks(const JogPath& path, const driver::CardTiming& card, const driver::Identification& who) {
   if (!card_map::has_engine(who.engines, card_map::engine::kUnderrunHold)) return path.ticks;
   const auto all = static_cast<std::uint8_t>((1U << who.axes) - 1);
@@ -65,7 +66,7 @@ void Jog::begin(const JogPath& path, double speed) {
   stopping_ = false;
   sent_ticks_ = 0;
   line_ticks_ = line_ticks(path, card_.timing(), card_.identification());
-  // Where the time base makes the ramp, the path waits for it at ratio 0.
+  // If the time base makes the ramp, the path is loaded at ratio 0.
   set_ratio_at_once(path.ramped_by_time_base ? 0 : driver::Card::kFullRatio);
   ratio_ = path.ramped_by_time_base ? 0 : 1;
   for (const driver::FeedCommand& piece : path.pieces) stream_->put(piece);
@@ -76,21 +77,22 @@ void Jog::begin(const JogPath& path, double speed) {
   if (path.ramped_by_time_base) {
     set_speed(speed);
   } else {
-    // It begins at full ratio when a stop from there is queued, and holds where that is all.
+    // The card starts at full ratio as soon as a complete stop is queued, and would go into an under-run hold if
+    // nothing more followed. So enough lines are sent at once.
     feed(std::numeric_limits<int>::max());
   }
 }
 
 void Jog::send_line() {
   const std::uint64_t left = path_->ticks - sent_ticks_;
-  // No line is shorter than the others.
+  // The last line takes up the remainder, so no line is shorter than the others.
   const std::uint64_t ticks = left < 2 * line_ticks_ ? left : line_ticks_;
   stream_->put(line_of(*path_, sent_ticks_, sent_ticks_ + ticks));
   sent_ticks_ += ticks;
 }
 
-// Lines until there are enough of them, but no more at once than leave time for a stop; of those sent, the one that the
-// card is at counts as over.
+// Sends lines until enough are queued, but at most `most` per call, so that a stop is not delayed. The line in
+// execution counts as done.
 void Jog::feed(int most) {
   if (stopping_ || sent_ticks_ == path_->ticks) return;
   const std::uint64_t begun = std::uint64_t{card_.parts().registers.read(reg::kGeometryBegun)} * line_ticks_;
@@ -102,7 +104,7 @@ void Jog::feed(int most) {
   stream_->flush();
 }
 
-// While nothing moves: the ratio is there after some clocks, fewer than an access takes.
+// Only at rest: the ratio takes effect after some clocks, fewer than an access takes.
 void Jog::set_ratio_at_once(std::uint32_t ratio) {
   card_.set_slew_time(std::chrono::nanoseconds(0));
   card_.set_ratio(ratio);

@@ -13,28 +13,29 @@
 namespace trammel::run {
 namespace {
 
-constexpr double kShaperShare = 0.95;     // of the rate at which the shaper makes pulses without a pause
-constexpr double kTicksPerPulse = 128;    // steps even to 1/64
-constexpr double kMaxPulses = 0x1p30;     // of one jog and axis: half of what the counters hold each way
+constexpr double kShaperShare = 0.95;     // fraction of the shaper's maximum pulse rate
+constexpr double kTicksPerPulse = 128;    // makes step intervals even to 1/64
+constexpr double kMaxPulses = 0x1p30;     // per jog and axis: half of the counters' range in each direction
 constexpr double kMaxTicks = 0x1p39;      // half of a command's 40 bits
-constexpr double kMinPathTicks = 64;      // of a path
-constexpr double kMinTickRate = 0x1p-30;  // ticks a clock
+constexpr double kMinPathTicks = 64;      // per path
+constexpr double kMinTickRate = 0x1p-30;  // ticks per clock
 
-// What the axes allow along a direction; all of them that it has.
+// Limits along a direction: those of all axes that move.
 struct Allowed {
   double speed = std::numeric_limits<double>::infinity();         // mm/s along the path
   double acceleration = std::numeric_limits<double>::infinity();  // mm/s^2
-  double length = std::numeric_limits<double>::infinity();        // mm to the first end
-  double pulses = 0;                                              // of the finest axis, a mm of path
+  double length = std::numeric_limits<double>::infinity();        // mm to the first soft limit
+  double pulses = 0;                                              // pulses of the finest axis per mm of path
 };
 
-// How far an axis may go in a direction, in the finest steps that move it; whole ones within the soft limits.
+// The distance that an axis may move in a direction, in the finest steps that move it; an integer within the soft
+// limits.
 double room(const machine::MachineAxis& axis, double finest, double here, bool upwards) {
   const double limit = upwards ? std::floor(axis.max * finest) : -std::ceil(axis.min * finest);
   return std::min(limit - (upwards ? here : -here) * finest, kMaxPulses);
 }
 
-// What the joints allow along a direction.
+// Applies the limits of the joints along a direction.
 void limit_joints(const kinematics::Kinematics& kinematics, const driver::CardTiming& card,
                   const gcode::Coordinates& direction, Allowed& result) {
   for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
@@ -77,7 +78,7 @@ double norm(const machine::Machine& machine, const gcode::Coordinates& vector) {
   return std::sqrt(sum);
 }
 
-// At rest at its end; `length` is the path's, `limits` what holds along it.
+// The path, which ends at rest. `length`: mm along the path; `limits`: the limits along it.
 JogPath made(const kinematics::Kinematics& kinematics, const driver::CardTiming& card,
              const gcode::Coordinates& direction, double length, double speed, const Allowed& limits) {
   JogPath path;
@@ -92,7 +93,7 @@ JogPath made(const kinematics::Kinematics& kinematics, const driver::CardTiming&
   gcode::Coordinates way{};
   for (std::size_t a = 0; a < kinematics.axes(); ++a) way[a] = direction[a] * length;
   for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
-    // Towards zero: never beyond a limit.
+    // Rounded towards zero, so never beyond a limit.
     const double slack = 1e-9;
     path.pulses[joint] = static_cast<std::int64_t>(kinematics.pulse_rate(joint, way) * (1 + slack));
     if (path.pulses[joint] != 0) path.mask = static_cast<std::uint8_t>(path.mask | 1U << joint);
@@ -133,13 +134,13 @@ JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card
   for (std::size_t a = 0; a < machine.axes.size(); ++a) direction[a] = velocity[a] / speed;
   const kinematics::Kinematics kinematics(machine);
   const Allowed limits = allowed(machine, kinematics, card, here, direction);
-  const double ramps = limits.speed * limits.speed / limits.acceleration;  // mm, both of them
+  const double ramps = limits.speed * limits.speed / limits.acceleration;  // mm, total of both ramps
   if (limits.length < 2 * ramps) {
     return made(kinematics, card, direction, limits.length, std::min(speed, limits.speed), limits);
   }
   JogPath path = made(kinematics, card, direction, limits.length, limits.speed, limits);
   if (path.pieces.size() == 3) {
-    // At full rate from the first tick on: the ratio rises from 0.
+    // The pieces begin at full rate; the ratio rises from 0.
     path.pieces[1].ticks += path.pieces[0].ticks;
     path.pieces.erase(path.pieces.begin());
     path.ramped_by_time_base = true;

@@ -12,8 +12,8 @@ constexpr double kUpdate = card_map::constant::kUpdateClocks;
 
 std::uint32_t floor_of(double rate) { return static_cast<std::uint32_t>(std::max(1.0, rate * 0x1p32)); }
 
-// At constant acceleration from one rate to another over `ticks`. The card holds a rate for an update and then adds the
-// gain: the first one is half a gain on.
+// A piece with constant acceleration that begins at rate `from`. The card holds the rate for an update and then adds
+// `gain`, so the first rate is half a gain above `from`.
 driver::FeedCommand piece(std::uint64_t ticks, double from, double gain, double floor) {
   driver::FeedCommand command;
   command.ticks = ticks;
@@ -27,7 +27,7 @@ driver::FeedCommand piece(std::uint64_t ticks, double from, double gain, double 
 }  // namespace
 
 std::vector<driver::FeedCommand> jog_profile(std::uint64_t ticks, double rate, double acceleration) {
-  // Slower than this the last tick of a stop would hang.
+  // At a lower rate the last tick of a stop would take too long.
   const double rest = std::min(std::sqrt(acceleration), rate);
   const auto updates_to = [&](double top) { return std::max(1.0, std::ceil((top - rest) / (acceleration * kUpdate))); };
   double top = rate;
@@ -42,7 +42,7 @@ std::vector<driver::FeedCommand> jog_profile(std::uint64_t ticks, double rate, d
   if (ramp < 1 || top <= rest) return {piece(ticks, rest, 0, rest)};
   const double gain = (top - rest) / updates;
   const auto up = static_cast<std::uint64_t>(ramp);
-  // A stop takes a tick more than the start: it ends on the floor, not a fraction of a tick above it.
+  // A stop takes one tick more than the start: it ends on the floor, not a fraction of a tick above it.
   const std::uint64_t cruise = reached ? ticks - 2 * up - 1 : 0;
   std::vector<driver::FeedCommand> pieces{piece(up, rest, gain, rest)};
   if (cruise != 0) pieces.push_back(piece(cruise, top, 0, top));

@@ -1,5 +1,5 @@
-// Which line of the program the card is at: the lines of the commands that went to its geometry queue, as many as the
-// queue can hold. Internal to the runner.
+// Finds the program line that the card is executing: stores the lines of the commands sent to the geometry queue, as
+// many as the queue can hold. Internal to the runner.
 #pragma once
 
 #include <algorithm>
@@ -11,17 +11,17 @@ namespace trammel::run {
 
 class LineRing {
  public:
-  // `most`: commands that can be on their way without having begun, at least 1.
+  // `most`: the largest number of commands sent and not yet begun, at least 1.
   explicit LineRing(std::size_t most) : lines_(most) {}
 
-  // The line of the next command for the geometry queue.
+  // Stores the line of the next command for the geometry queue.
   void put(std::size_t line) { lines_[slot(put_++)] = line; }
 
-  // The card's count of commands begun, which wraps at 2^32; it grows by less than that from call to call.
+  // Takes the card's count of begun commands, which wraps at 2^32; it grows by less than that between two calls.
   void begun(std::uint32_t count) { begun_ += count - static_cast<std::uint32_t>(begun_); }
 
-  // Line of the command that has begun last; of the first one before that, 0 before anything was put. Of commands so
-  // far back that the ring has lost them: the oldest line that it has.
+  // Line of the command that has begun last. Before the first has begun, line of the first command; 0 if none was
+  // stored. For a command that the ring has already overwritten, the oldest stored line.
   std::size_t current() const {
     if (put_ == 0) return 0;
     const std::uint64_t oldest = put_ > lines_.size() ? put_ - lines_.size() : 0;

@@ -9,7 +9,7 @@ void MachinePosition::look(const driver::Snapshot& now) {
   last_ = now;
 }
 
-// Joints that do not move with the axis keep their pulses.
+// Joints that do not move with the axis keep their pulse counts.
 void MachinePosition::set(std::size_t axis, double millimetres) {
   gcode::Coordinates at = kinematics_.coordinates(pulses_);
   at[axis] = millimetres;

@@ -8,7 +8,8 @@ namespace trammel::run {
 bool PathPoints::keeps(const PathPoint& before, const PathPoint& point) const {
   double square = 0;
   for (std::size_t i = 0; i < point.at.size(); ++i) square += std::pow(point.at[i] - before.at[i], 2);
-  // Where the kind of way changes, a nearer point is kept too, but not any number of them.
+  // A change between rapid and feed needs only an eighth of the distance, but not none, so the number of points stays
+  // bounded.
   const double least = point.rapid == before.rapid ? distance_ : distance_ / 8;
   return square >= least * least;
 }
@@ -21,7 +22,8 @@ void PathPoints::add(const PathPoint& point) {
 
 void PathPoints::thin() {
   if (distance_ == 0) {
-    // What the path's whole way would be at `limit` points; it is found by halving or doubling from there.
+    // Starts at an eighth of the mean distance that `limit` points would have along the whole path; the loop doubles
+    // it.
     double way = 0;
     for (std::size_t i = 1; i < kept_.size(); ++i) {
       const Point& a = kept_[i - 1].at;

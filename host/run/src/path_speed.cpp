@@ -36,7 +36,7 @@ void PathSpeed::add(std::uint64_t cycle, std::size_t axis, double way) {
   Waiting& step = waiting_[axis];
   const auto now = static_cast<double>(cycle);
   const double interval = step.any ? std::max(1.0, now - step.cycle) : 0;
-  // Half of an interval after the step at most: one that is not beyond this step.
+  // The step is spread over at most half of the interval after it, so it does not extend beyond this step.
   widen(now + 1);
   if (step.any) spread(bins_, bin_width_, step, axis, interval);
   step = {true, now, way, interval};
@@ -48,7 +48,7 @@ std::vector<PathSpeed::Sample> PathSpeed::samples() const {
     if (waiting_[a].any) spread(bins, bin_width_, waiting_[a], a, 0);
   }
   std::vector<Sample> result;
-  // A short run has bins of a clock or so: fewer are put together, so that there are samples enough.
+  // A short run has bins of about a clock: fewer bins are combined, so that there are enough samples.
   std::size_t used = kBins;
   while (used > 0 && bins[used - 1] == std::array<double, kAxes>{}) --used;
   const std::size_t together = std::max<std::size_t>(1, (used + kBins / kFine - 1) / (kBins / kFine));

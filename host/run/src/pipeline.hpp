@@ -1,5 +1,5 @@
-// One pass over a program: lines, reader, blocks, planner; from a place on where it begins in the middle. Internal to
-// the runner.
+// One pass over a program: lines, reader, blocks, planner. For a run that begins in the middle, it begins at that
+// place. Internal to the runner.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,8 +23,8 @@ namespace trammel::run {
 
 class Pipeline {
  public:
-  // `meanwhile`: as of planner::PlannerSettings. `all`, unless it is null, gets every command of the program, those
-  // before the place where the run begins too. Throws ProgramError for a place that the program does not have.
+  // `meanwhile`: as in planner::PlannerSettings. `all`, unless it is null, gets every command of the program, including
+  // those before the place where the run begins. Throws ProgramError for a place that the program does not have.
   Pipeline(const ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
            const RunSettings& settings, std::function<void()> meanwhile = {}, driver::CommandSink* all = nullptr)
       : lines_(lines()),
@@ -35,7 +35,7 @@ class Pipeline {
         card_(card),
         planning_({settings.single_block, settings.profile, std::move(meanwhile), settings.ticks}) {
     planner_.emplace(blocks_, machine_, card_, planning_);
-    planning_.ticks = {};  // behind a probe they begin anew
+    planning_.ticks = {};  // after a probe the ticks start anew
     if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
     if (settings.single_block) blocks_.keep_corners();
     all_.tap = all;
@@ -43,7 +43,7 @@ class Pipeline {
     if (settings.place || settings.first_line > 1) go_to_start(settings);
   }
 
-  // As planner::Planner::next(), but throws ProgramError, and gives false where a probe stands next, too.
+  // As planner::Planner::next(), but throws ProgramError, and returns false also if a probe is next.
   bool next(driver::CommandSink& sink, planner::PlannedBlock& planned) {
     if (opening_) return give_opening(sink, planned);
     if (all_.tap == nullptr) return plan_next(sink, planned);
@@ -51,18 +51,18 @@ class Pipeline {
     return plan_next(all_, planned);
   }
   bool at_probe() const { return blocks_.at_probe(); }
-  // From here next() gives the probe's way to its target, then false.
+  // After this call, next() gives the probe's motion to its target, then returns false.
   const gcode::Motion& begin_probe() {
     const gcode::Motion& motion = blocks_.begin_probe();
     planner_.emplace(blocks_, machine_, card_, planning_);
     return motion;
   }
-  // Goes on behind the probe, pulses by joint.
+  // Continues after the probe; positions in pulses by joint.
   void end_probe(const planner::Pulses& edge, const planner::Pulses& rest, bool tripped) {
     reader_.probed(millimetres(edge), millimetres(rest), tripped);
     go_on_at(rest);
   }
-  // For the check before the run: at its target, not known yet.
+  // For the check before the run: assumes that the probe ends at its target, which is not known yet.
   void assume_probe(const planner::Pulses& target) {
     reader_.assume_probed();
     go_on_at(target);
@@ -74,15 +74,15 @@ class Pipeline {
   const kinematics::Kinematics& kinematics() const { return kinematics_; }
 
   const std::string& file() const { return lines_->name(); }
-  // Where the run begins.
+  // The position at which the run begins.
   const planner::Pulses& start() const { return start_; }
-  std::size_t begin_line() const { return begin_line_; }  // of the program
-  // Of the program's commands that count in GEOMETRY_BEGUN, those before the run's first one.
+  std::size_t begin_line() const { return begin_line_; }  // program line
+  // Commands of the program before the run's first one that count in GEOMETRY_BEGUN.
   std::uint64_t skipped() const { return skipped_; }
-  // Whether the run begins amid the program, and how many feed ticks of its first path are done.
+  // Whether the run begins in the middle of the program, and how many feed ticks of its first path are already done.
   bool replays() const { return replays_; }
   std::uint64_t ticks_done() const { return ticks_done_; }
-  // What it sets before anything else.
+  // The output levels that the run sets first.
   const driver::OutputCommand& restored() const { return restored_; }
   const std::map<std::string, std::size_t>& accepted() const { return reader_.accepted(); }
 
@@ -95,16 +95,16 @@ class Pipeline {
     driver::CommandSink* tap = nullptr;
     driver::CommandSink* next = nullptr;
   };
-  // The block in which the run begins, from there on.
+  // The rest of the block in which the run begins.
   struct Opening final : driver::CommandSink {
     void put(const driver::Command& command) override { commands.push_back(command); }
     std::vector<driver::Command> commands;
     planner::PlannedBlock planned;
   };
-  // Before a replay that begins at a line: looks for its first block.
+  // Starts a replay at a line: finds the first block of the line.
   class AtLine final : public driver::CommandSink {
    public:
-    // Line 0: the replay knows its place.
+    // Line 0: the replay already knows its place.
     AtLine(Replay& replay, const planner::PlannedBlock& planned, std::size_t line)
         : replay_(replay), planned_(planned), line_(line) {}
     void put(const driver::Command& command) override {
@@ -153,8 +153,8 @@ class Pipeline {
     replays_ = true;
     ticks_done_ = replay.ticks_done();
   }
-  // Where a block is a line or stands, its ticks say where the machine must be: not where somebody else's program has
-  // stopped the card since.
+  // For a line or a block without motion, the ticks determine the machine's position. Refuses any other position:
+  // another program has moved the card since the stop.
   void check_position(std::uint64_t done, const planner::Pulses& position) const {
     const planner::Block& block = opening_->planned.block;
     planner::Pulses wanted = block.start;
@@ -169,7 +169,7 @@ class Pipeline {
                     "it since",
                     done, place_text(millimetres(position), machine_)));
   }
-  // Pulses behind so many ticks of a line.
+  // The position after `done` ticks of a line.
   static planner::Pulses after(planner::Pulses at, const driver::LineCommand& line, std::uint64_t done) {
     for (std::size_t joint = 0; joint < at.size(); ++joint) {
       const driver::Int128 way =
@@ -211,10 +211,10 @@ class Pipeline {
   kinematics::Kinematics kinematics_;
   planner::CardLimits card_;
   planner::PlannerSettings planning_;
-  std::optional<planner::Planner> planner_;  // of the program up to the next probe
+  std::optional<planner::Planner> planner_;  // plans up to the next probe
   Tee all_;
   planner::Pulses start_{};
-  std::optional<Opening> opening_;  // until it is given
+  std::optional<Opening> opening_;  // until next() has returned it
   std::size_t begin_line_ = 1;
   std::uint64_t skipped_ = 0;
   bool replays_ = false;

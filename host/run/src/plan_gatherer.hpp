@@ -1,4 +1,4 @@
-// Makes the plan of what a pass tells. Internal to the runner.
+// Builds the plan from the events of a pass. Internal to the runner.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@ class PlanGatherer final : public Observer {
     plan_.start = plan_.end = pipeline.start();
   }
 
-  // A block of the one pass or the other, each once.
+  // Adds a block, from either the first or the second pass, once each.
   void planned(const planner::PlannedBlock& block, std::uint64_t /*first*/) override { add(block); }
   void sending(const planner::PlannedBlock& block) override { add(block); }
 
   void probe() { ++plan_.probes; }
-  // So far.
+  // The plan up to now.
   Plan plan() const {
     Plan plan = plan_;
     plan.feeds_not_reached = feeds_.entries();

@@ -1,4 +1,4 @@
-// A number for a list of commands. Internal to the runner.
+// A hash of a list of commands. Internal to the runner.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace trammel::run {
 
-// Equal lists have equal numbers; lists that differ have different ones, but for one pair of lists in 2^64.
+// Equal lists have equal hashes; two different lists have the same hash with a probability of 2^-64.
 class PlanIdentity final : public driver::CommandSink {
  public:
   void put(const driver::Command& command) override {

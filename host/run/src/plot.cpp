@@ -33,7 +33,7 @@ std::array<double, 3> spans_of(const std::vector<PathPoint>& points) {
   return spans;
 }
 
-// XY, XZ and YZ where three axes move, XY first; else the one plane in which the path lies, XY or XZ for a single axis.
+// XY, XZ and YZ if three axes move, XY first; else the plane in which the path lies, XY or XZ for a single axis.
 std::vector<View> views_of(const std::vector<PathPoint>& points) {
   const std::array<double, 3> spans = spans_of(points);
   const auto moves = [&](std::size_t i) { return spans[i] > 0; };
@@ -44,7 +44,7 @@ std::vector<View> views_of(const std::vector<PathPoint>& points) {
 
 chart::Point seen(const Point& point, View view) { return {point[view.across], point[view.up]}; }
 
-// The ways of one kind; what is of the other kind interrupts the line.
+// The rapid or the feed motions as one line, which is interrupted at motions of the other kind.
 std::vector<chart::Point> ways(const std::vector<PathPoint>& points, View view, bool rapid) {
   constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
   std::vector<chart::Point> line;
@@ -71,12 +71,12 @@ chart::Panel path_panel(const Plot& plot, View view, const std::string& title) {
   chart::Panel panel = plane(plot, view, title);
   std::vector<chart::Point> made;
   for (const PathPoint& point : plot.executed) made.push_back(seen(point.at, view));
-  // Rapids last: where the pulses run along them, their dashes show.
+  // Rapids are drawn last, so that their dashes remain visible over pulses.
   panel.series = {
       {"commanded", chart::colour(1), ways(plot.commanded, view, false), chart::Mark::kLine, 2.2},
       {plot.executed_thinned ? "pulses, thinned" : "pulses", chart::colour(0), made, chart::Mark::kLine, 0.8},
       {"rapids", "#444444", ways(plot.commanded, view, true), chart::Mark::kLine, 1.2, true}};
-  // A program without rapids, or without anything else, has no such line to explain.
+  // A series without points gets no entry in the legend.
   for (chart::Series& series : panel.series) {
     if (series.points.empty()) series.label.clear();
   }
@@ -98,7 +98,7 @@ chart::Panel detail_panel(const Plot& plot, View view) {
   return panel;
 }
 
-// The plane in which the stretch is largest.
+// The plane in which the stretch has the largest area.
 View detail_view(const Plot& plot) {
   std::vector<PathPoint> points;
   for (const Point& point : plot.detail_executed) points.push_back({point, false});
@@ -119,7 +119,7 @@ chart::Panel speed_panel(const Plot& plot) {
   for (const PathSpeed::Sample& sample : plot.speed) panel.series[0].points.push_back({sample.seconds, sample.speed});
   panel.x.low = 0;
   panel.y.low = 0;
-  // A line at the frame would not be seen; and nothing has neither negative times nor negative speeds.
+  // Leaves room above the curve, because a line at the frame would not be visible. Times and speeds are never negative.
   constexpr double kRoom = 1.06;
   double most = 0;
   for (const PathSpeed::Sample& sample : plot.speed) most = std::max(most, sample.speed);

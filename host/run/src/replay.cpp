@@ -17,9 +17,10 @@ using driver::Int128;
 using driver::Uint128;
 
 constexpr std::uint64_t kUpdateClocks = card_map::constant::kUpdateClocks;
-constexpr std::uint64_t kEveryClock = std::numeric_limits<std::uint64_t>::max();  // rate, 2^-64 ticks a clock
+constexpr std::uint64_t kEveryClock = std::numeric_limits<std::uint64_t>::max();  // rate, 2^-64 ticks per clock
 
-// The feed generator from a piece's first enabled clock on, an update a step. Rates in 2^-64 ticks a clock.
+// Simulates the feed generator from a piece's first enabled clock on, one update per step. Rates in 2^-64 ticks per
+// clock.
 class Generator {
  public:
   explicit Generator(const FeedCommand& piece)
@@ -29,7 +30,7 @@ class Generator {
         jerk_(piece.jerk),
         in_use_(piece.rate) {}
 
-  // To the update in which so many ticks, fewer than the piece has, have been given.
+  // Advances to the update in which the total reaches `ticks`, which is less than the ticks of the piece.
   void go_to(std::uint64_t ticks) {
     const Uint128 wanted(ticks, 0);
     while (given_ < wanted) {
@@ -39,7 +40,7 @@ class Generator {
       step();
     }
   }
-  // Ticks that the update gives behind so many.
+  // Ticks of the current update after the first `ticks` of the piece.
   std::uint64_t more_than(std::uint64_t ticks) const {
     return (given_ + Uint128::product(in_use_, kUpdateClocks)).high() - ticks;
   }
@@ -64,7 +65,7 @@ class Generator {
   bool away_ = false;
 };
 
-// Beyond its field only on the way to a clamp.
+// Clamps the value to the width of its field; larger values occur only if the rate will be clamped anyway.
 std::int64_t fitted(Int128 value) {
   if (value.high() != (static_cast<std::int64_t>(value.low()) < 0 ? -1 : 0)) {
     return value.high() < 0 ? std::numeric_limits<std::int64_t>::min() : std::numeric_limits<std::int64_t>::max();
@@ -72,13 +73,13 @@ std::int64_t fitted(Int128 value) {
   return static_cast<std::int64_t>(value);
 }
 
-// A remainder that would reverse before its end: of a stop that is rounded.
+// Corrects a rest that would reverse before its end, as the rest of a rounded stop may.
 void make_end(FeedCommand& rest, bool at_floor) {
   const bool falls = rest.acceleration <= 0 && rest.jerk <= 0;
   if (at_floor && falls) {
     rest.acceleration = rest.jerk = 0;
   } else if (driver::ticks_to_reversal(rest)) {
-    // From v to 0 over n ticks: v^2 / 2n a clock.
+    // From v to 0 over n ticks: v^2 / 2n per clock.
     const double rate = static_cast<double>(rest.rate) * 0x1p-64;
     const double slope = kUpdateClocks * rate * rate / 2 / static_cast<double>(rest.ticks);
     rest.acceleration = -static_cast<std::int64_t>(slope * 0x1p64);

@@ -17,16 +17,16 @@
 namespace trammel::run {
 namespace {
 
-// That go with a probe's way: PROBE and PROBE_END.
+// Commands around the motion of a probe: PROBE and PROBE_END.
 constexpr std::uint64_t kProbeCommands = 2;
 
-// The first pass needs the commands' number only.
+// The first pass needs only the number of commands.
 class NoSink final : public driver::CommandSink {
  public:
   void put(const driver::Command& /*command*/) override {}
 };
 
-// The card's ratio is 0 when it comes back.
+// When this function returns, the card's ratio is 0.
 void hold_at_once(driver::Card& card) {
   namespace reg = card_map::reg;
   constexpr int kLooks = 1000;
@@ -39,7 +39,7 @@ void hold_at_once(driver::Card& card) {
   if (looks == kLooks) throw driver::StateError("the card's hold has no effect: the run cannot begin with a ramp");
 }
 
-// Streams the plan; errors of the card get the line of the program that was being run.
+// Streams the plan and adds the current program line to errors of the card.
 class ProgramStream final : private driver::CommandSink {
  public:
   ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers,
@@ -50,7 +50,8 @@ class ProgramStream final : private driver::CommandSink {
         single_block_(single_block),
         card_(card),
         before_(card.read_snapshot()),
-        // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
+        // A command has at least two halfwords: half of these slots are for the queue, half for commands held back by
+        // the stream.
         lines_(card.identification().geometry_depth),
         held_until_(pipeline.ticks_done() != 0 ? 2 : 1),
         begins_(begins),
@@ -59,7 +60,7 @@ class ProgramStream final : private driver::CommandSink {
   }
   ~ProgramStream() override { begins_ = false; }
 
-  // Gives back where the program ends, pulses.
+  // Returns the end position of the program, pulses.
   planner::Pulses run() {
     planner::Pulses end = pipeline_.start();
     try {
@@ -81,8 +82,8 @@ class ProgramStream final : private driver::CommandSink {
   const driver::Snapshot& before() const { return before_; }
 
  private:
-  // Up to the end, or to the next probe. Where lines come slowly the stream never waits for room: so what others have
-  // asked for is looked at here.
+  // Streams up to the end or to the next probe. With slow program lines the stream never waits for room, so this loop
+  // serves the requests of others.
   void run_section(planner::Pulses& end) {
     while (next()) {
       stream_.flush();
@@ -92,7 +93,8 @@ class ProgramStream final : private driver::CommandSink {
       first_of_block_ = true;
     }
   }
-  // All before it is done first. What it sends is kept here until it is whole.
+  // Waits until all earlier commands are done. Collects the commands of the probe and sends them when they are
+  // complete.
   void probe() {
     const gcode::Motion motion = pipeline_.begin_probe();
     const bool level = machine_.probe.touched_level != motion.probe_away;
@@ -133,7 +135,7 @@ class ProgramStream final : private driver::CommandSink {
     }
     return position;
   }
-  // What stands before an error of the program is run to its end, which is a stop.
+  // On an error of the program, runs the commands before it to their end, which is a stop.
   bool next() {
     try {
       return pipeline_.next(*this, planned_);
@@ -153,7 +155,7 @@ class ProgramStream final : private driver::CommandSink {
     }
     send(command);
   }
-  // All before it is done first. A fault that comes meanwhile is told by what is sent next.
+  // Waits until all earlier commands are done. A fault during the wait is reported by the next send.
   void await_spindle() {
     constexpr std::chrono::milliseconds kLook{5};
     stream_.finish();
@@ -179,7 +181,7 @@ class ProgramStream final : private driver::CommandSink {
       stream_.put(command);
     }
   }
-  // Before it goes to the stream.
+  // Call before the command goes to the stream.
   void announce(const driver::Command& command) {
     for (Observer* observer : observers_) observer->command(commands_, command);
     ++commands_;
@@ -187,10 +189,11 @@ class ProgramStream final : private driver::CommandSink {
     if (geometry && driver::counts_as_begun(command)) lines_.put(planned_.block.line);
   }
   driver::StreamOptions options() {
-    // 200 looks a second: the queues hold far more than 5 ms of motion, and every look costs a simulation bus clocks.
+    // 200 polls per second: the queues hold far more than 5 ms of motion, and in a simulation every poll costs bus
+    // clocks.
     constexpr std::uint32_t kLooksPerSecond = 200;
     driver::StreamOptions options;
-    options.opens_in_hold = true;  // an operator's
+    options.opens_in_hold = true;  // a hold by the operator
     options.poll_clocks = std::max<std::uint64_t>(64, card_.identification().clock_hz / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
       lines_.begun(progress.geometry_begun);
@@ -200,14 +203,14 @@ class ProgramStream final : private driver::CommandSink {
     };
     return options;
   }
-  // A run that begins amid the program begins from ratio 0, once its first piece that moves has begun.
+  // A run that begins in the middle of the program is in a hold until its first piece that moves has begun.
   void release(std::uint32_t feed_begun) {
     if (!begins_ || feed_begun < held_until_) return;
     begins_ = false;
     card_.request_hold(false);
   }
-  // After an error: what the card has begun by now. A fault has set its counters back; what had begun by then was
-  // latched. Where the link fails too, the last look counts.
+  // After an error, updates the count of commands begun. A fault has reset the card's counters, but their values at the
+  // fault were latched. If the link fails too, the last polled value remains.
   void look_at_begun(bool fault) {
     try {
       lines_.begun((fault ? card_.read_stop_snapshot() : card_.read_snapshot()).geometry_begun);
@@ -219,17 +222,17 @@ class ProgramStream final : private driver::CommandSink {
   const std::vector<Observer*>& observers_;
   const machine::Machine& machine_;
   bool single_block_;
-  std::size_t line_ = 0;  // of the block under way
+  std::size_t line_ = 0;  // line of the current block
   driver::Card& card_;
   driver::Snapshot before_;
   std::vector<ProbeMade> probes_;
-  std::vector<driver::Command>* probe_paths_ = nullptr;  // while a probe's commands are gathered
+  std::vector<driver::Command>* probe_paths_ = nullptr;  // set while a probe's commands are collected
   planner::PlannedBlock planned_;
   bool first_of_block_ = true;
-  bool awaits_spindle_ = false;  // before the next block
-  std::uint64_t commands_ = 0;   // put
+  bool awaits_spindle_ = false;  // wait for the spindle before the next block
+  std::uint64_t commands_ = 0;   // commands announced
   LineRing lines_;
-  std::uint32_t held_until_;  // so many pieces and barriers have begun
+  std::uint32_t held_until_;  // the hold ends when this many feed pieces and barriers have begun
   bool& begins_;
   driver::Stream stream_;
 };
@@ -280,7 +283,7 @@ const Plan& Runner::plan() {
   return plan_;
 }
 
-// Before anything moves. A run that begins amid the program begins from ratio 0.
+// Call before any motion. A run that begins in the middle of the program begins from ratio 0.
 void Runner::prepare(driver::Card& card, const Pipeline& pipeline) const {
   if (settings_.stands_at && pipeline.start() != *settings_.stands_at) {
     const kinematics::Kinematics& kinematics = pipeline.kinematics();
@@ -303,7 +306,7 @@ void Runner::require_planned_for(driver::Card& card) const {
 
 Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
-  // A window that takes long to plan does not make a stop or a hold wait.
+  // The callback serves stop and hold requests while a long window is planned.
   Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { driver::serve_requests(card); });
   prepare(card, pipeline);
   ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block, begins_);
@@ -338,7 +341,7 @@ Outcome Runner::stream(driver::Card& card) {
   return made;
 }
 
-// Throws unless the card has counted what the program says.
+// Throws unless the card's counts equal the planned ones.
 Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, const planner::Pulses& end) const {
   const driver::Snapshot after = card.read_snapshot();
   const kinematics::Kinematics kinematics(machine_);

@@ -53,7 +53,7 @@ void StepRecorder::path_step(const driver::PathStep& step) {
     path_step_list_->row(
         {static_cast<std::int64_t>(step.command), static_cast<std::int64_t>(step.tick), step.axis, step.direction});
   }
-  // All steps of one tick make one point of the picture.
+  // All steps of one tick form one point of the picture.
   if (options_.plot && last_ && (last_->command != step.command || last_->tick != step.tick)) point_of_path();
   path_position_[step.axis] += step.direction;
   last_ = step;

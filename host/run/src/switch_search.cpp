@@ -17,8 +17,8 @@
 namespace trammel::run {
 namespace {
 
-constexpr double kLook = 0.002;          // s, between two looks at the card
-constexpr double kFilterMargin = 0.002;  // s, behind the longest filter: scans and snapshots
+constexpr double kLook = 0.002;          // s, polling interval
+constexpr double kFilterMargin = 0.002;  // s, added to the longest filter, for scans and snapshots
 
 std::string letter_of(const machine::Machine& machine, const WantedEdge& edge) {
   const bool second = edge.motor >= machine.axes.size();
@@ -33,7 +33,8 @@ std::string name_of(const machine::Machine& machine, const WantedEdge& edge) {
 
 void SwitchSearch::sleep(double seconds) { card_.bus().sleep(std::chrono::nanoseconds(std::llround(seconds * 1e9))); }
 
-// An edge that does not come since its level is there would be waited for in vain. An index passes by.
+// Refuses an edge whose level is already present, because it would never occur. An index mark is passed during the
+// motion, so its level does not matter.
 void SwitchSearch::check_levels(const std::vector<WantedEdge>& wanted) {
   const std::uint32_t levels = card_.read_inputs();
   for (const WantedEdge& edge : wanted) {
@@ -74,7 +75,7 @@ bool SwitchSearch::any_captured(std::size_t units) {
                      [](const driver::CaptureState& state) { return state.valid; });
 }
 
-// Seconds from rest until all axes have their speed; a tenth more for the pieces' rounding.
+// Seconds from rest until all axes have their speed, plus 10% for the rounding of the pieces.
 double SwitchSearch::move_to_speed(const std::vector<WantedEdge>& wanted) const {
   double seconds = 0;
   for (const WantedEdge& edge : wanted)
@@ -82,7 +83,7 @@ double SwitchSearch::move_to_speed(const std::vector<WantedEdge>& wanted) const 
   return seconds;
 }
 
-// The card ramps by itself; it stands before the fault is cleared.
+// The card ramps to a stop by itself and is at rest before the fault is cleared.
 void SwitchSearch::stop_behind_the_edge() {
   if (card_.read_faults() != card_map::field::kFaultProbe) return;
   card_.wait_until_stopped();
@@ -99,7 +100,8 @@ void SwitchSearch::move(const std::vector<WantedEdge>& wanted) {
   for (const WantedEdge& edge : wanted) distance[edge.axis] = edge.velocity * seconds;
   for (const double way : distance) square += way * way;
   const bool at_speed = std::any_of(wanted.begin(), wanted.end(), [](const auto& edge) { return edge.at_speed; });
-  // The card ramps at an edge into a switch; off it nothing is in the way of a later stop.
+  // At an edge into a switch the card ramps by itself; at an edge off a switch there is room for the later stop by this
+  // program.
   const bool stops_here = !wanted.front().to_active;
   const std::uint32_t slew = card_.parts().registers.read(card_map::reg::kSlew);
   if (!at_speed) arm(wanted);
@@ -121,7 +123,7 @@ void SwitchSearch::move(const std::vector<WantedEdge>& wanted) {
   }
 }
 
-// An edge that its filter has not passed yet would be missed.
+// Waits until no filter is still delaying an edge, which would be missed otherwise.
 void SwitchSearch::wait_for_filters(std::size_t units) {
   double longest = machine_.inputs.filter;
   for (const machine::InputRole& role : machine_.inputs.roles) longest = std::max(longest, role.filter.value_or(0));
@@ -134,7 +136,7 @@ void SwitchSearch::wait_for_filters(std::size_t units) {
   }
 }
 
-// Those that have come are taken out of `wanted`.
+// Returns the captured edges and removes them from `wanted`.
 std::vector<FoundEdge> SwitchSearch::take(std::vector<WantedEdge>& wanted) {
   std::vector<FoundEdge> found;
   std::vector<WantedEdge> left;
@@ -152,7 +154,7 @@ std::vector<FoundEdge> SwitchSearch::take(std::vector<WantedEdge>& wanted) {
   return found;
 }
 
-// What is left of their distances; behind the edge of an axis's one motor the other's has a bound of its own.
+// Reduces the distances by the motion made. After the edge of one motor of an axis, the other motor has its own bound.
 void SwitchSearch::shorten(std::vector<WantedEdge>& wanted, const gcode::Coordinates& from,
                            const std::vector<FoundEdge>& found) const {
   const kinematics::Kinematics kinematics(machine_);

@@ -1,4 +1,4 @@
-// Axes that move until the edges of their switches have come. Internal to homing.
+// Moves axes until the edges of their switches have occurred. Internal to homing.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +12,35 @@
 
 namespace trammel::run {
 
-// An edge that is looked for.
+// An edge to search for.
 struct WantedEdge {
-  std::size_t axis = 0;   // of the machine
+  std::size_t axis = 0;   // axis of the machine
   unsigned motor = 0;     // axis of the card that the switch belongs to
-  unsigned input = 0;     // of the card
-  const char* name = "";  // of its role, "home", "index"
+  unsigned input = 0;     // input of the card
+  const char* name = "";  // name of its role, "home" or "index"
   double velocity = 0;    // mm/s of the axis, signed
-  double distance = 0;    // mm, > 0, in which it must come
-  double bound = 0;       // of these, for messages: as they were at first
-  double squaring = 0;    // mm, that the others of the same axis may come later; 0: they have no bound of their own
+  double distance = 0;    // mm, > 0, within which the edge must occur
+  double bound = 0;       // initial value of `distance`, mm, for messages
+  double squaring = 0;    // mm, bound for the other motors of the axis after this edge; 0: no bound of their own
   bool to_active = true;
-  bool at_speed = false;  // not looked at before the axis has its speed
+  bool at_speed = false;  // ignored until the axis has its speed
 };
 struct FoundEdge {
   WantedEdge wanted;
-  planner::Pulses at{};  // where the motors stood, pulses as the MachinePosition counts them
+  planner::Pulses at{};  // motor positions at the edge, pulses as in MachinePosition
 };
 
-// The position must be the card's, and nobody else moves the card. Not thread-safe.
+// The position must equal the card's, and nothing else may move the card. Not thread-safe.
 class SwitchSearch {
  public:
-  // `machine`: without soft limits. All must outlive the search.
+  // `machine`: without soft limits. All three must outlive the search.
   SwitchSearch(driver::Card& card, const machine::Machine& machine, MachinePosition& position)
       : card_(card), machine_(machine), position_(position) {}
 
-  // All axes move on one path, each at its velocity; the first edge ramps all of them to a stop, and those whose edge
-  // has not come go on. An edge into a switch ramps in the card (by the role of the probe outside probing), any other
-  // when this program sees it. Throws HomingError where an edge does not come in its distance, and where a switch has
-  // the level already; else as run::Jog.
+  // All axes move on one path, each at its velocity. The first edge ramps all axes to a stop; those whose edge has not
+  // occurred then go on. At an edge into a switch the card ramps (by the role of the probe outside probing); at any
+  // other edge this program stops the motion when it sees the edge. Throws HomingError if an edge does not occur within
+  // its distance, or if a switch already has the level; otherwise throws as run::Jog.
   std::vector<FoundEdge> find(std::vector<WantedEdge> wanted);
 
  private:

@@ -1,5 +1,5 @@
-// One line of G-code as Grbl 1.1h reads it: which words it takes, which it refuses and by which number. What the line
-// does with coordinates is the project's reader's (interpreter.hpp). Pure functions.
+// Parses one line of G-code by the rules of Grbl 1.1h: the words that it accepts, and the error numbers for those that
+// it refuses. The project's reader interprets the coordinates of the line (interpreter.hpp). Pure functions.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 namespace trammel::grbl {
 
 struct Block {
-  std::string text;  // the same for the project's reader, one line or two; empty: nothing is left for it
-  Modal after;       // the state behind it
+  std::string text;  // the line for the project's reader, one or two lines; empty if it has nothing to do
+  Modal after;       // parser state after the line
   int line_number = 0;
-  bool moves = false;    // axis motion, a dwell
+  bool moves = false;    // axis motion or dwell
   bool outputs = false;  // spindle or coolant
   bool probe = false;
   bool probe_away = false;
@@ -26,14 +26,15 @@ struct Block {
   bool end = false;      // M2, M30
   bool offsets = false;  // a coordinate offset changes
 
-  // Grbl answers ok only when all before it, and it, are done.
+  // Whether Grbl answers ok only when the line and all earlier ones are done.
   bool waits() const { return probe || dwell || pause || end; }
 };
 
-// `line`: cleaned(). `axes`: letters that may be used.
+// `line`: the result of cleaned(). `axes`: letters of the permitted axes.
 Status parse_block(std::string_view line, const Modal& before, std::string_view axes, Block& block);
 
-// What stands behind "$J=": axis words, F, and G20, G21, G90, G91, G53 for this line alone. `text` is one line of G1.
+// Parses the text after "$J=": axis words, F, and G20, G21, G90, G91, G53 for this line only. `text` becomes one line
+// of G1.
 Status parse_jog(std::string_view line, const Modal& before, std::string_view axes, Block& block);
 
 }  // namespace trammel::grbl

@@ -1,5 +1,5 @@
-// The machine behind the protocol, as a card and a machine file make it: each motion is a run::Runner, homing is
-// run::home(). One thread; `meanwhile` is called from the bus's sleeps.
+// The machine behind the protocol, implemented by a card and a machine file: each motion is a run::Runner, homing is
+// run::home(). Used by one thread; `meanwhile` is called from the bus's sleeps.
 #pragma once
 
 #include <chrono>
@@ -18,11 +18,11 @@ namespace trammel::grbl {
 
 class CardMachine final : public MachineSide, private run::Observer {
  public:
-  // Longest sleep of the bus: a real-time command waits no longer.
+  // Longest sleep of the bus, and so the longest delay of a real-time command.
   static constexpr std::chrono::nanoseconds kLongestSleep = std::chrono::milliseconds(5);
 
-  // `card` is open on `bus` and stands; both must outlive it. `trust`: a place that was lost is taken for the
-  // machine's. Throws driver::Error, and driver::ArgumentError for a machine that the card cannot drive.
+  // `card` is open on `bus` and at rest; both must outlive this object. `trust`: accept a lost place as the machine's
+  // place. Throws driver::Error, and driver::ArgumentError for a machine that the card cannot drive.
   CardMachine(driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine, bool trust);
 
   const machine::Machine& machine() const override { return limited_; }
@@ -56,26 +56,26 @@ class CardMachine final : public MachineSide, private run::Observer {
   void look_again();
   void set_ratio(driver::PieceClass piece_class, double percent);
   End fault();
-  // Calls `move`; what it throws becomes an End.
+  // Calls `move` and converts its exceptions to an End, except driver::LinkError.
   End guarded(const std::function<void(End&)>& move);
   std::vector<std::size_t> axes_with_switches() const;
 
   driver::Card& card_;
   run::AttentiveBus& bus_;
   machine::Machine machine_;
-  machine::Machine limited_;  // with the soft limits of homed axes alone, and a window for a sender
-  std::string lost_;          // why the place is not known; empty where it is
+  machine::Machine limited_;  // with soft limits of homed axes only, and a short look-ahead window
+  std::string lost_;          // reason why the place is unknown; empty if it is known
   std::unique_ptr<run::MachinePosition> position_;
-  planner::PathTicks ticks_;  // of the motions so far
+  planner::PathTicks ticks_;  // tick counts of the motions so far
   bool moving_ = false;
   std::size_t line_ = 0;
-  double planned_ = 0;       // s of motion sent
-  std::uint64_t begun_ = 0;  // card clock of the first look behind it; 0: none yet
+  double planned_ = 0;       // duration of the motion sent, s
+  std::uint64_t begun_ = 0;  // card time at the first poll after the first block was sent; 0: none yet
   Live live_;
   bool faulted_ = false;
-  Clock::time_point looked_{};  // at the position
+  Clock::time_point looked_{};  // last poll of the position
   Clock::time_point looked_at_inputs_{};
-  std::uint64_t speed_time_ = 0;  // card clock of the last measure of speed
+  std::uint64_t speed_time_ = 0;  // card time of the last speed measurement
   gcode::Coordinates speed_at_{};
 };
 

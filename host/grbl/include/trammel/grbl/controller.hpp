@@ -1,5 +1,5 @@
-// A Grbl 1.1h controller: a sender's bytes in, Grbl's answers out, a machine behind it. The caller gives bytes with
-// receive() whenever some have come, also from within MachineSide's `meanwhile`, and calls work() in a loop. One
+// A Grbl 1.1h controller: takes a sender's bytes, gives Grbl's answers and drives a machine. The caller passes on bytes
+// with receive() as they arrive, also from within MachineSide's `meanwhile`, and calls work() in a loop. Used by one
 // thread.
 #pragma once
 
@@ -21,36 +21,36 @@ namespace trammel::grbl {
 
 enum class State { kIdle, kRun, kHold, kJog, kAlarm, kHome, kCheck, kSleep, kDoor };
 
-// As Grbl's planner: lines that are accepted and not yet taken by a motion.
+// Size of Grbl's planner: lines that are accepted and not yet taken by a motion.
 inline constexpr std::size_t kPlannerBlocks = 15;
 
 class Controller {
  public:
   using Write = std::function<void(const std::string& text)>;
 
-  // All must outlive the controller.
+  // `machine`, `settings` and the target of `write` must outlive the controller.
   Controller(MachineSide& machine, Settings& settings, Write write);
 
-  // The banner, as after power-up.
+  // Writes the banner, as after power-up.
   void begin();
   void receive(std::string_view bytes) { input_.put(bytes); }
-  // Answers what it may now, without waiting; for `meanwhile`, too.
+  // Answers all lines that it can answer without waiting; may be called from `meanwhile`.
   void serve();
-  // serve(), then the motion, homing or dwell that is due, to its end; waits for a moment where nothing is.
+  // Calls serve(), then executes the next motion, homing or dwell to its end; if there is none, waits for a moment.
   void work();
 
   State state() const { return state_; }
-  // What the answer to '?' says.
+  // The content of the answer to '?'.
   Report report_now();
-  // Behind the lines that were accepted so far.
+  // The parser state after the lines accepted so far.
   const Interpreter& interpreter() const { return interpreter_; }
-  // Nothing is under way or waits to be done.
+  // Whether nothing is in progress or waiting.
   bool idle() const { return !executing_ && queue_.empty() && !alone_ && !waiting_ && !reset_ && !input_.has_bytes(); }
 
  private:
   friend class SectionLines;
   struct Accepted {
-    std::string preamble;  // lines that a section needs that begins with this one
+    std::string preamble;  // lines that restore the parser state, for a section that begins with this one
     Block block;
     Before before;
   };
@@ -67,7 +67,7 @@ class Controller {
   void raise(Alarm alarm, const std::string& message = {});
   void drop_lines();
 
-  // Whether the line is done with; else it waits for what is under way.
+  // Returns true when the line is finished; false if it must wait for the work in progress.
   bool take(const std::string& line, bool at_rest = false);
   void take_code(const std::string& line);
   void take_jog(const std::string& line);
@@ -103,20 +103,20 @@ class Controller {
   MachineSide& machine_;
   Settings& settings_;
   Write write_;
-  machine::Machine shape_;  // for the interpreter: as the machine side has it now
+  machine::Machine shape_;  // copy of the machine side's present machine, for the interpreter
   InputBuffer input_;
   Interpreter interpreter_;
   StatusReport status_;
   State state_ = State::kIdle;
   State before_hold_ = State::kIdle;
   std::deque<Accepted> queue_;
-  std::vector<int> numbers_;            // N words of the section's lines, by line
-  std::optional<std::string> waiting_;  // a line that is taken when all before it is done
-  std::optional<Accepted> alone_;       // an accepted one that is answered when it is done
-  bool answer_at_resume_ = false;       // of M0
-  bool executing_ = false;              // within a motion of the machine
-  bool executing_alone_ = false;        // of a line that is answered when it is done
-  bool switched_ = false;               // an output, by a line, since all were switched off
+  std::vector<int> numbers_;            // N words of the section's lines, in order
+  std::optional<std::string> waiting_;  // a line to take when all earlier ones are done
+  std::optional<Accepted> alone_;       // an accepted line that is answered when it is done
+  bool answer_at_resume_ = false;       // M0 is answered at the resume
+  bool executing_ = false;              // in a motion of the machine
+  bool executing_alone_ = false;        // in the motion of a line that is answered when it is done
+  bool switched_ = false;               // a line has switched an output since all were switched off
   bool reset_ = false;
   bool cancelling_jog_ = false;
   Alarm pending_alarm_ = Alarm::kNone;

@@ -1,4 +1,4 @@
-// A sender's bytes: real-time commands are taken out at once, the rest waits as lines. Not thread-safe.
+// Buffers a sender's bytes: real-time commands are executed at once, the rest waits as lines. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -10,27 +10,28 @@
 
 namespace trammel::grbl {
 
-// What senders count on: so many bytes may be under way before the answer to the first line.
+// Buffer size that senders assume: the number of bytes that may be sent before the answer to the first line.
 inline constexpr std::size_t kReceiveBuffer = 128;
-// Grbl's line buffer: one more byte in a line, blanks and comments aside, is error:11.
+// Grbl's line buffer: a line with more bytes, not counting blanks and comments, is error:11.
 inline constexpr std::size_t kLongestLine = 79;
 
 class InputBuffer {
  public:
-  // Called for '?', '!', '~', 0x18 and 0x80 .. 0xFF; a 0xC2 (UTF-8's first byte of 0x80 .. 0xBF) is dropped.
+  // `realtime` is called for '?', '!', '~', 0x18 and 0x80 .. 0xFF. 0xC2 (the first UTF-8 byte of 0x80 .. 0xBF) is
+  // dropped.
   explicit InputBuffer(std::function<void(std::uint8_t)> realtime) : realtime_(std::move(realtime)) {}
 
-  // Bytes beyond kMost that wait are dropped, as Grbl drops those beyond its 128.
+  // Bytes beyond kMost waiting bytes are dropped, as Grbl drops those beyond its 128.
   void put(std::string_view bytes);
-  // The next line without its end; CR LF ends one line. Of a line that is too long, kLongestLine + 1 bytes.
+  // The next line without its end; CR LF ends one line. A line that is too long is returned whole; cleaned() cuts it.
   std::optional<std::string> take();
   void clear();
   bool has_bytes() const { return !waiting_.empty(); }
 
-  // Bytes that a sender may add now without one being dropped, at most kReceiveBuffer.
+  // Number of bytes that a sender may add now without loss, at most kReceiveBuffer.
   std::size_t room() const;
 
-  // More than kReceiveBuffer, so that a client that sends without counting loses nothing soon.
+  // Larger than kReceiveBuffer, so that a client that sends without counting does not lose bytes soon.
   static constexpr std::size_t kMost = 65536;
 
  private:
@@ -41,8 +42,9 @@ class InputBuffer {
   bool after_return_ = false;
 };
 
-// A line as Grbl's parser gets it: without blanks, control characters, comments and '/', letters in upper case; a line
-// that begins with '%' is empty. More than kLongestLine bytes are cut off behind one of them.
+// Converts a line as Grbl does before it parses it: removes blanks, control characters, comments and '/', and converts
+// letters to upper case. A line that begins with '%' becomes empty. A line of more than kLongestLine bytes is cut after
+// kLongestLine + 1.
 std::string cleaned(std::string_view line);
 
 }  // namespace trammel::grbl

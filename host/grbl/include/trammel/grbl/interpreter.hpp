@@ -1,6 +1,6 @@
-// Where a sender's program stands: parser state, offsets, and the place that the lines accepted so far lead to. Each
-// line is checked by Grbl's rules (block.hpp), then read once by the project's reader, which alone knows coordinates;
-// soft limits and the card's ranges are checked by the planner's builder. Not thread-safe.
+// The state of a sender's program: parser state, offsets, and the position after the lines accepted so far. Each line
+// is checked by Grbl's rules (block.hpp), then read once by the project's reader, which interprets its coordinates. The
+// planner's builder checks soft limits and the card's ranges. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -17,31 +17,32 @@ namespace trammel::grbl {
 
 class Interpreter {
  public:
-  // `machine` must outlive the interpreter; begin() tells a change of it.
+  // `machine` must outlive the interpreter.
   Interpreter(const machine::Machine& machine, const planner::CardLimits& card) : machine_(machine), card_(card) {
     reset();
   }
 
-  // A line, cleaned(). Ok: state and place are those behind it. Else nothing changes. kTravelExceeded: a soft limit.
+  // Reads a line, which must be cleaned(). If it returns kOk, state and position are those after the line; otherwise
+  // nothing changes. kTravelExceeded: a soft limit.
   Status read(std::string_view line, Block& block);
-  // A jog changes the place alone.
+  // Reads a jog, which changes only the position.
   Status read_jog(std::string_view line, Block& block);
 
-  // Grbl's state after a soft reset; offsets but G92 and the tool length stay.
+  // Sets Grbl's state after a soft reset; all offsets except G92 and the tool length are kept.
   void reset();
-  // The machine stands there: after a stop, homing, a probe.
+  // Sets the machine position after a stop, homing or a probe.
   void stand(const gcode::Coordinates& at) { place_ = at; }
   const gcode::Coordinates& place() const { return place_; }
 
   const Modal& modal() const { return modal_; }
-  // Something else than a line has switched them off.
+  // To call when something other than a line has switched these outputs off.
   void end_spindle() { modal_.spindle = 5; }
   void end_coolant() { modal_.mist = modal_.flood = false; }
-  // As LinuxCNC numbers them, each that Grbl has: G28, G30, G92, G54 to G59.
+  // Parameters with LinuxCNC's numbers, for each that Grbl has: G28, G30, G92, G54 to G59.
   const std::map<int, double>& parameters() const { return parameters_; }
   void set_parameters(const std::map<int, double>& parameters);
 
-  // For reports, by X Y Z and what the machine has of A B C; mm.
+  // Axis letters for reports: X Y Z, and those of A B C that the machine has. Offsets in mm.
   std::string letters() const;
   // kind: 28, 30, 92 or 54 to 59.
   gcode::Coordinates offset(int kind) const;

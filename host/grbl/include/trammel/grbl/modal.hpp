@@ -23,11 +23,11 @@ struct Modal {
   double mm_per_unit() const { return inches ? 25.4 : 1; }
 };
 
-// "G38.2" of 382.
+// "G38.2" for 382.
 std::string g_word(int tenths);
 // "[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]"; `report_inches`: $13.
 std::string parser_state(const Modal& modal, bool report_inches);
-// Lines for the project's reader that bring it to this state; motion mode, coordinate system and spindle aside.
+// Lines that bring the project's reader to this state, except motion mode, coordinate system and spindle.
 std::string preamble(const Modal& modal);
 
 }  // namespace trammel::grbl

@@ -1,4 +1,4 @@
-// Grbl 1.1's error and alarm numbers (its doc/csv files), and how the project's own errors map to them.
+// Grbl 1.1's error and alarm numbers (its doc/csv files), and the mapping of the project's errors to them.
 #pragma once
 
 #include "trammel/gcode/error.hpp"
@@ -52,7 +52,7 @@ enum class Alarm {
   kEmergencyStop = 10,
 };
 
-// The nearest of Grbl's numbers to an error of the project's reader.
+// Grbl's error number that is closest to an error of the project's reader.
 Status status_of(gcode::ErrorCode code);
 
 }  // namespace trammel::grbl

@@ -1,5 +1,5 @@
-// The clients of one controller: one sends lines, the others read along. A client that only reads may ask for reports
-// ('?') and for a feed hold ('!'); what else it sends is dropped. One thread.
+// The clients of one controller: one sends lines, the others only read. A reading client may send report requests ('?')
+// and feed holds ('!'); its other bytes are dropped. Used by one thread.
 #pragma once
 
 #include <functional>
@@ -16,21 +16,21 @@ class Server {
  public:
   using Note = std::function<void(const std::string&)>;
 
-  // `note`: who comes and goes, for the operator.
+  // `note`: reports connecting and disconnecting clients to the operator.
   explicit Server(Note note) : note_(std::move(note)) {}
 
-  // What the controller says, to all clients. One that does not take it is let go.
+  // Sends the controller's text to all clients. A client that does not accept it is disconnected.
   void write(const std::string& text);
 
-  // Takes who has come to `listener` (may be null), and hands what has come to the controller; waits for nothing.
+  // Accepts a new client of `listener` (may be null), and passes received bytes on to the controller; does not wait.
   void turn(transport::Listener* listener, Controller& controller);
-  // A client that is there from the beginning.
+  // Adds a client that is connected from the beginning.
   void add(std::unique_ptr<transport::ByteStream> stream, Controller& controller);
 
   bool has_clients() const { return !clients_.empty(); }
 
  private:
-  // The first one sends; the others read.
+  // The first client sends; the others read.
   using Client = std::unique_ptr<transport::ByteStream>;
   bool serve(std::size_t index, Controller& controller);
   void forget(std::size_t index, const std::string& why, Controller* controller);

@@ -1,5 +1,5 @@
-// Grbl's settings $0 to $132 over a machine file: the file gives the defaults, what a sender writes changes the machine
-// (docs/user/grbl.md lists which). Kept in a file with startup lines and offsets. Not thread-safe.
+// Grbl's settings $0 to $132, on top of a machine file: the file gives the defaults, and a sender's changes modify the
+// machine (docs/user/grbl.md lists them). Changes are kept in a file, with startup lines and offsets. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -16,33 +16,34 @@ namespace trammel::grbl {
 
 class Settings {
  public:
-  // `file`: where what was changed is kept; empty: nowhere. A file that is missing is an empty one. Throws
-  // std::runtime_error for one that cannot be read or has lines that are no settings.
+  // `file`: keeps the changes; empty: they are not kept. A missing file counts as empty. Throws std::runtime_error for
+  // a file that cannot be read or contains lines that are not settings.
   Settings(const machine::Machine& machine, std::string file);
 
-  // The machine with the settings in force.
+  // The machine with the present settings.
   const machine::Machine& machine() const { return machine_; }
   double value(int number) const;
   bool flag(int number) const { return value(number) != 0; }
   // Lines of $$, "$0=10".
   std::vector<std::string> lines() const;
-  // kInvalidStatement for a number that Grbl lacks, else Grbl's reason for a value that it refuses.
+  // Returns kInvalidStatement for a number that Grbl lacks, and Grbl's error for a value that it refuses.
   Status set(int number, double value);
-  // Whether a change of it may change machine().
+  // Whether a change of this setting may change machine().
   static bool changes_machine(int number);
 
   const std::string& startup(std::size_t n) const { return startup_.at(n); }
   void set_startup(std::size_t n, const std::string& line);
   const std::map<int, double>& parameters() const { return parameters_; }
   void set_parameters(const std::map<int, double>& parameters);
-  // $I's text.
+  // The text of $I.
   const std::string& build_text() const { return build_text_; }
   void set_build_text(const std::string& text);
 
-  // Why what was changed last holds until the end alone: the file could not be written. Empty: it is kept.
+  // The reason why the last change will be lost at the end of the process: the file could not be written. Empty: the
+  // change is kept.
   std::string take_trouble() { return std::exchange(trouble_, {}); }
 
-  // $RST=$: the machine file's again.
+  // $RST=$: restores the machine file's values.
   void restore();
 
   static constexpr std::size_t kStartupLines = 2;

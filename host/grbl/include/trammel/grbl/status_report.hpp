@@ -1,4 +1,4 @@
-// The answer to '?': "<Idle|MPos:0.000,0.000,0.000|FS:0,0>", with WCO and Ov in Grbl's cadence. Not thread-safe.
+// The answer to '?': "<Idle|MPos:0.000,0.000,0.000|FS:0,0>", with WCO and Ov at Grbl's intervals. Not thread-safe.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@ namespace trammel::grbl {
 
 struct Report {
   std::string state = "Idle";  // with its sub-state, "Hold:0"
-  bool busy = false;           // Run, Jog, Home, Hold, Door: WCO and Ov come more seldom
-  std::string position;        // "0.000,0.000,0.000", of the machine
+  bool busy = false;           // Run, Jog, Home, Hold or Door: longer intervals between WCO and between Ov
+  std::string position;        // machine position, "0.000,0.000,0.000"
   std::string work_position;
   std::string offset;  // WCO
   unsigned blocks_free = 0;
   std::size_t bytes_free = 0;
   int line = 0;
-  double feed = 0;   // in the report's units
+  double feed = 0;   // in the units of the report
   double speed = 0;  // S
   std::string pins;  // "XP"
   int feed_override = 100;
@@ -27,9 +27,9 @@ struct Report {
 
 class StatusReport {
  public:
-  // `mask`: $10; 1: MPos in place of WPos, 2: Bf.
+  // `mask`: $10; bit value 1: MPos in place of WPos, 2: Bf.
   std::string text(const Report& report, unsigned mask);
-  // They come with the next report, Ov with the one after WCO.
+  // The next report contains WCO, or Ov; if both are due, Ov is in the report after WCO.
   void offsets_changed() { offset_in_ = 0; }
   void overrides_changed() { overrides_in_ = 0; }
 

@@ -1,7 +1,7 @@
-// A card as Mesa's driver sees it over Ethernet: memory spaces that datagrams of LBP16 read and write.
+// A card as Mesa's driver sees it over Ethernet: memory spaces that LBP16 datagrams read and write.
 //
-// A datagram is judged as a whole first: one that is malformed, or that asks for what the card does not have, changes
-// nothing and gets no answer. Addresses: bytes. Errors: LinkError. One thread.
+// A datagram is checked as a whole first. A malformed datagram, or one that uses a space that the card does not have,
+// changes nothing and gets no answer. Addresses: bytes. Errors: LinkError. Used by one thread.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ class Board {
     std::uint64_t all_refused() const;
   };
 
-  // `hardware`: the Ethernet address that a driver sends to, first byte first. `hostmot2` must outlive it.
+  // `hardware`: the Ethernet address shown to drivers, first byte first. `hostmot2` must outlive the board.
   Board(Hostmot2& hostmot2, const std::array<std::uint8_t, 6>& hardware, std::uint32_t clock_hz);
 
-  // The answer to a datagram; empty where it asked for nothing, or was refused.
+  // The answer to a datagram; empty if it reads nothing or was refused.
   const Bytes& answer(const std::uint8_t* bytes, std::size_t size);
   const Counts& counts() const { return counts_; }
 

@@ -1,4 +1,5 @@
-// The card's time for code that serves it: a simulated card runs when it is told to, hardware by itself. One thread.
+// The card's time, for code that serves the card: a simulated card runs only when told to, hardware by itself. Used by
+// one thread.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +13,13 @@ class CardTime {
   virtual ~CardTime() = default;
   // Clocks since the card's reset.
   virtual std::uint64_t now() const = 0;
-  // Returns at that clock; at once where it has passed.
+  // Returns at that clock, or at once if the clock has passed.
   virtual void run_to(std::uint64_t clock) = 0;
 };
 
 class EngineTime final : public CardTime {
  public:
-  // `engine` must outlive it.
+  // `engine` must outlive this object.
   explicit EngineTime(sim::Engine& engine) : engine_(engine) {}
   std::uint64_t now() const override { return engine_.cycles(); }
   void run_to(std::uint64_t clock) override {

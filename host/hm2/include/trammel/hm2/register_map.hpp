@@ -1,5 +1,5 @@
-// The part of hostmot2's register map that a card here shows, as data: what it says of itself (IDROM), an I/O port, a
-// watchdog, step generators of version 2. Byte addresses; registers have 32 bits. Source of the facts: LinuxCNC's
+// The part of hostmot2's register map that this card has, as data: the self-description (IDROM), an I/O port, a
+// watchdog, and step generators of version 2. Byte addresses; registers have 32 bits. Source of the facts: LinuxCNC's
 // src/hal/drivers/mesa-hostmot2 (hostmot2.h, stepgen.c, watchdog.c, ioport.c, doc/README.regmap). Pure functions and
 // plain data, thread-safe.
 #pragma once
@@ -9,9 +9,9 @@
 
 namespace trammel::hm2::map {
 
-inline constexpr std::uint32_t kBytes = 0x10000;  // of the space
+inline constexpr std::uint32_t kBytes = 0x10000;  // size of the space
 
-// What a driver reads to know that this is hostmot2, and where the IDROM is.
+// A driver reads these to identify hostmot2 and to find the IDROM.
 inline constexpr std::uint16_t kCookie = 0x0100;
 inline constexpr std::uint16_t kIdrom = 0x0400;
 
@@ -22,7 +22,7 @@ inline constexpr std::uint16_t kWatchdogReset = 0x0E00;
 inline constexpr std::uint16_t kPortData = 0x1000;
 inline constexpr std::uint16_t kPortInvert = 0x1400;
 
-// Registers of the step generators: one word for each axis from here on, but for kMasterRate.
+// Registers of the step generators: one word per axis from each address on, except kMasterRate.
 inline constexpr std::uint16_t kStepRate = 0x2000;
 inline constexpr std::uint16_t kAccumulator = 0x2100;
 inline constexpr std::uint16_t kMode = 0x2200;
@@ -37,10 +37,10 @@ inline constexpr std::uint32_t kLongestTime = 0x3FFF;
 // Pins of the one I/O port: STEP and DIR of each axis, then inputs.
 inline constexpr unsigned kPins = 24;
 
-// Eight characters, in the IDROM; the driver's name of the card is made of the info space's.
+// Eight characters, in the IDROM. The driver makes its name for the card from the info space, not from this name.
 inline constexpr char kBoardName[9] = "trammel ";
 
-// The constant registers of a card of so many axes (1 to 8) and this clock: kBytes / 4 words, 0 where there is nothing.
+// The constant registers of a card with `axes` (1 to 8) and this clock: kBytes / 4 words, 0 at unused addresses.
 std::vector<std::uint32_t> constant_words(unsigned axes, std::uint32_t clock_hz);
 
 }  // namespace trammel::hm2::map

@@ -1,7 +1,8 @@
-// `trammel serve --hm2`: a card behind a UDP port for one driver. Each datagram counts at the card's clock at which it
-// came, by the kernel's time stamp, however late this process is; only the answer is late then.
+// `trammel serve --hm2`: a card behind a UDP port, for one driver. Each datagram takes effect at the card's clock of
+// its arrival, by the kernel's time stamp. If this process is late, only the answer is late.
 //
-// It sleeps until a datagram comes, a line is due or the watchdog's time is over. Errors: LinkError. One thread.
+// The server sleeps until a datagram arrives, a line is due or the watchdog expires. Errors: LinkError. Used by one
+// thread.
 #pragma once
 
 #include <chrono>
@@ -19,24 +20,24 @@ namespace trammel::hm2 {
 class Server {
  public:
   struct Settings {
-    std::uint32_t clock_hz = 0;  // of the card
-    double lose_percent = 0;     // of the datagrams, each way, on purpose, once something has moved
-    std::uint64_t seed = 1;      // of which
-    std::function<void(const std::string&)> note = [](const auto&) {};  // what the operator should know
+    std::uint32_t clock_hz = 0;  // clock of the card
+    double lose_percent = 0;     // share of datagrams to lose deliberately, per direction, after the first motion
+    std::uint64_t seed = 1;      // seed of the random choice of lost datagrams
+    std::function<void(const std::string&)> note = [](const auto&) {};  // gets messages for the operator
   };
   struct Counts {
     std::uint64_t drivers = 0;
-    std::uint64_t strangers = 0;  // datagrams of others while a driver was there
-    std::uint64_t lost = 0;       // on purpose
+    std::uint64_t strangers = 0;  // datagrams of others while a driver was active
+    std::uint64_t lost = 0;       // lost deliberately
     std::chrono::nanoseconds longest_answer{};
-    std::chrono::nanoseconds longest_gap{};  // from a datagram of the driver's to its next one
-    double lost_seconds = 0;                 // that the card was too slow for
+    std::chrono::nanoseconds longest_gap{};  // between two datagrams of the driver
+    double lost_seconds = 0;                 // time that the card was too slow to make up for
   };
 
-  // All must outlive it.
+  // `hostmot2`, `board` and `port` must outlive the server.
   Server(Hostmot2& hostmot2, Board& board, UdpPort& port, Settings settings);
 
-  // Serves what has come and what is due; sleeps before that for 50 ms at most.
+  // Serves received datagrams and due work; sleeps before that for at most 50 ms.
   void turn();
   bool has_driver() const { return driver_.has_value(); }
   const Counts& counts() const { return counts_; }

@@ -1,21 +1,22 @@
-// hostmot2's step generators on a card of this project: a rate for each axis, which holds until the next one, and an
-// accumulator that tells where the axis is.
+// hostmot2's step generators on a card of this project: each axis has a rate, which holds until the next one is
+// written, and an accumulator that shows its position.
 //
-// The card runs them by position streaming, in lines of kSlice. A new rate counts from the next line on. That line is
-// sent kLead before the one under way ends, so that a rate takes effect between kLead and kLead + kSlice after it came.
-// While all rates are 0 the card rests, without a stream.
+// The card executes them by position streaming, in lines of kSlice. A new rate takes effect with the next line. That
+// line is sent kLead before the end of the current one, so a rate takes effect between kLead and kLead + kSlice after
+// it was written. While all rates are 0 the card is at rest, without a stream.
 //
 // Units. Rates: 2^-32 pulses per clock of the card, signed, as in hostmot2's register. Positions: 2^-32 pulses. Times:
 // clocks of the card.
 //
-// Nothing is rounded twice: an axis has made floor(1/2 + p) pulses where p is the sum of rate * clocks, exact to 2^-32.
+// Rounding does not accumulate: an axis has made floor(1/2 + p) pulses, where p is the sum of rate * clocks, exact to
+// 2^-32.
 //
-// The accumulator has 16 fraction bits. Its whole part, rounded to the nearest, is always the card's position counter,
-// which counts pulses at the pins. The fraction is p's, where p and the counter agree to half a pulse; else it is held
-// at the nearest end of that half pulse. So an axis that stands on a whole pulse reads as that pulse, and a driver that
-// wants it there sends no pulse to and fro.
+// The accumulator has 16 fraction bits. Its value rounded to the nearest integer is always the card's position counter,
+// which counts pulses at the pins. The fraction is that of p if p and the counter agree to within half a pulse;
+// otherwise it is clamped to the nearest end of that half pulse. Therefore an axis at rest on a whole pulse reads as
+// that pulse, and a driver that wants it there does not send pulses back and forth.
 //
-// Errors: LinkError. What else the card refuses ends the motion, and trouble() says why. One thread.
+// Errors: LinkError. Any other refusal of the card ends the motion, and trouble() gives the reason. Used by one thread.
 #pragma once
 
 #include <array>
@@ -31,7 +32,7 @@
 
 namespace trammel::hm2 {
 
-// Registers of an axis; times in clocks.
+// Step settings of an axis; times in clocks.
 struct StepTimes {
   std::uint32_t length = 0;
   std::uint32_t space = 0;
@@ -51,37 +52,38 @@ class StepGenerators {
   static constexpr std::uint64_t kNever = UINT64_MAX;
 
   struct Counts {
-    std::uint64_t lines = 0;        // sent to the card
-    std::uint64_t clamped = 0;      // of these, in which an axis was slower than told: its step times allow no more
-    std::uint64_t streams = 0;      // from rest to rest
-    std::uint64_t stale_ticks = 0;  // that the card went on for without a new line
+    std::uint64_t lines = 0;        // lines sent to the card
+    std::uint64_t clamped = 0;      // lines in which an axis was slower than requested, because of its step times
+    std::uint64_t streams = 0;      // streams, each from rest to rest
+    std::uint64_t stale_ticks = 0;  // ticks for which the card continued without a new line
   };
 
-  // `card`, which stands, and `time` must outlive it. Throws ArgumentError for a card without position streaming.
+  // `card`, which is at rest, and `time` must outlive this object. Throws ArgumentError for a card without position
+  // streaming.
   StepGenerators(driver::Card& card, CardTime& time);
 
   unsigned axes() const { return axes_; }
-  // From the next line on. Ignored while there is trouble.
+  // Takes effect with the next line. Ignored while trouble() is not empty.
   void set_rate(unsigned axis, std::int32_t rate);
-  // Counts from the next time on at which all axes stand.
+  // Takes effect when all axes are next at rest.
   void set_times(unsigned axis, const StepTimes& times);
 
-  // Lets the card's time go on to `clock`, some hundred clocks more at most, with the lines that are due until then.
+  // Advances the card's time to `clock`, or some hundred clocks beyond it, and sends the lines that are due by then.
   void run_to(std::uint64_t clock);
-  // When the next line is due; kNever at rest.
+  // The clock at which the next line is due; kNever at rest.
   std::uint64_t next_due() const;
   bool moves() const { return stream_.has_value(); }
 
-  // Ends all motion at once: the card drops what it has, and pulses under way are made whole. Rates are 0.
+  // Ends all motion at once: the card drops its lines and completes pulses that have begun. Sets all rates to 0.
   void stop();
-  // Why the card's motion has ended; empty where all is well.
+  // The reason why the card's motion has ended; empty if there is no trouble.
   const std::string& trouble() const { return trouble_; }
-  // Clears the card's faults and the trouble, where their cause has gone.
+  // Clears the card's faults and trouble(), if their cause is gone.
   void clear_trouble();
 
-  // Looks at the card, for accumulator().
+  // Reads the card for accumulator().
   void latch();
-  // As of latch(), 2^-16 pulses, wrapping.
+  // The value at the last latch(), 2^-16 pulses, wrapping.
   std::uint32_t accumulator(unsigned axis) const { return accumulators_[axis]; }
   const std::array<std::int32_t, card_map::kMaxAxes>& counters() const { return counters_; }
 
@@ -92,7 +94,7 @@ class StepGenerators {
  private:
   using Positions = std::array<std::int64_t, card_map::kMaxAxes>;
   using Rates = std::array<std::int64_t, card_map::kMaxAxes>;
-  // Where the axes are told to be: from `begin` on for so many clocks, then the next one.
+  // The commanded positions of one line: `from` and `rates` for `clocks` clocks from `begin` on.
   struct Line {
     std::uint64_t begin = 0;  // clock
     std::uint64_t clocks = 0;
@@ -119,14 +121,14 @@ class StepGenerators {
   std::uint64_t lead_;
   std::array<std::int32_t, card_map::kMaxAxes> rates_{};
   std::array<StepTimes, card_map::kMaxAxes> times_{};
-  unsigned new_times_ = 0;  // bit n: those of axis n are not the card's yet
+  unsigned new_times_ = 0;  // bit n: times of axis n are not written to the card yet
 
   std::optional<driver::PositionStream> stream_;
-  std::array<std::int32_t, card_map::kMaxAxes> origin_{};  // counters at the opening
-  Positions told_{};                                       // at the end of what was sent, from the origin
-  std::uint64_t end_ = 0;                                  // clock
-  std::array<Line, 4> lines_{};                            // the last ones, in a ring
-  std::uint64_t sent_ = 0;                                 // lines of this stream
+  std::array<std::int32_t, card_map::kMaxAxes> origin_{};  // counters when the stream was opened
+  Positions told_{};                                       // commanded at the end of the lines sent, from the origin
+  std::uint64_t end_ = 0;                                  // clock at the end of the lines sent
+  std::array<Line, 4> lines_{};                            // the last lines sent, in a ring
+  std::uint64_t sent_ = 0;                                 // lines sent in this stream
 
   std::array<std::int32_t, card_map::kMaxAxes> counters_{};
   std::array<std::uint32_t, card_map::kMaxAxes> accumulators_{};

@@ -1,5 +1,5 @@
-// hostmot2's watchdog, in clocks of the card. It bites when it was not written in time, and stays bitten until the
-// driver clears its status. Off after a reset. Pure state, not thread-safe.
+// hostmot2's watchdog, in clocks of the card. It bites (expires) if it is not written in time, and stays bitten until
+// the driver clears its status. Off after a reset. Pure state, not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,18 @@ namespace trammel::hm2 {
 
 class Watchdog {
  public:
-  static constexpr std::uint32_t kOff = 0x80000000;  // this bit of the timer
+  static constexpr std::uint32_t kOff = 0x80000000;  // bit of the timer that switches it off
   static constexpr std::uint64_t kNever = UINT64_MAX;
 
   // Register writes at `clock`.
-  void set_timer(std::uint32_t timer, std::uint64_t clock) {  // timer + 1 clocks from here on
+  void set_timer(std::uint32_t timer, std::uint64_t clock) {  // expires timer + 1 clocks after `clock`
     timer_ = timer;
     restart(clock);
   }
-  void reset(std::uint32_t value, std::uint64_t clock) {  // counts only with its key
+  void reset(std::uint32_t value, std::uint64_t clock) {  // has an effect only with its key
     if (value >> 24 == kKey) restart(clock);
   }
-  // True where this has cleared a bite.
+  // Returns true if this write has cleared a bite.
   bool set_status(std::uint32_t value, std::uint64_t clock) {
     if (!bitten_ || (value & 1) != 0) return false;
     bitten_ = false;
@@ -30,7 +30,7 @@ class Watchdog {
   void bite() { bitten_ = true; }
   bool bitten() const { return bitten_; }
   std::uint32_t timer() const { return timer_; }
-  // The clock at which it bites.
+  // The clock at which the watchdog bites.
   std::uint64_t deadline() const { return bitten_ || (timer_ & kOff) != 0 ? kNever : deadline_; }
 
  private:

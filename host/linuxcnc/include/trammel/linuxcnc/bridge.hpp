@@ -1,13 +1,14 @@
-// Between LinuxCNC's realtime modules and the card: takes the periods of the HAL component, moves the card by them, and
-// tells what the card does. While a period asks for the path, a PathSide moves the card.
+// Connects LinuxCNC's realtime modules to the card: takes the periods of the HAL component, moves the card by them, and
+// reports the card's state. While a period requests the path, a PathSide moves the card.
 //
-// What starts motion. A stream opens when a period with ENABLE follows one without it, seen by this owner, and nothing
-// stands uncleared. So neither a clear, nor a new owner, nor one that wakes up late, moves anything by itself.
-// What stops it. A disabled machine stops at its last target where that is at rest, else on the card's ramp. A fault of
-// the card, a missing period, and a target that the driver refuses stop it likewise; cause and place stay in the status
-// until a period with CLEAR. A missing period at rest is counted and forgotten: nothing was lost.
+// Start of motion: a stream opens when this owner has seen a period without ENABLE followed by one with it, and no stop
+// is uncleared. Therefore neither a clear, nor a new owner, nor an owner that wakes up late starts a motion by itself.
+// Stop of motion: a disabled machine stops at its last target if that is at rest, otherwise on the card's ramp. A fault
+// of the card, a missing period, and a target that the driver refuses stop it as well; cause and position stay in the
+// status until a period with CLEAR. A missing period at rest is counted and otherwise ignored, because nothing was
+// lost.
 //
-// Thread-safety: one thread, which uses the card as well.
+// Thread safety: one thread, which also uses the card.
 #pragma once
 
 #include <chrono>
@@ -27,7 +28,7 @@
 namespace trammel::linuxcnc {
 
 struct BridgeOptions {
-  std::function<void(const std::string&)> note;  // told who has come and gone, and what stopped the card
+  std::function<void(const std::string&)> note;  // gets messages: connections of modules, and reasons of stops
   ServoRecord* record = nullptr;
 };
 
@@ -35,14 +36,15 @@ class Bridge {
  public:
   static constexpr std::chrono::milliseconds kTurn{1};
 
-  // Sets the card up by the machine file, and gives it a place where it has none. `card` is open on `bus`, stands, and
-  // is not faulted; all must outlive the bridge. Throws driver::Error.
+  // Configures the card for the machine file, and gives it a place if it has none. `card` is open on `bus`, at rest and
+  // without a fault; all must outlive the bridge. Throws driver::Error.
   Bridge(Region& region, driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine, PathSide& path,
          BridgeOptions options = {});
 
-  // Turns until `ended` is true; the card stands then. Throws driver::LinkError; TimeoutError where it does not stand.
+  // Turns until `ended` returns true; then the card is at rest. Throws driver::LinkError, and TimeoutError if the card
+  // does not come to rest.
   void run(const std::function<bool()>& ended);
-  // One turn: waits at most so long (of the host's time) for a period, moves the card, publishes.
+  // One turn: waits for a period for at most `longest` of the host's time, moves the card, publishes the status.
   void turn(std::chrono::nanoseconds longest);
   // Stops the card as for a disabled machine.
   void stop();
@@ -63,7 +65,7 @@ class Bridge {
   void set_hold(bool hold);
   void clear();
   void come_back_at_once();
-  // Calls `call`, and makes what it throws the cause of a stop.
+  // Calls `call`, and makes its exception the cause of a stop.
   void guarded(const std::function<void()>& call);
   void stopped_by_fault(std::uint32_t faults);
   void stopped_by(std::uint32_t cause, const std::string& text);
@@ -85,12 +87,12 @@ class Bridge {
   trammel_settings settings_{};
   bool settings_came_ = false;
   trammel_status status_{};
-  bool stopped_ = false;      // by something that was not cleared yet
-  bool armed_ = false;        // a period without ENABLE has come since
-  bool path_wanted_ = false;  // of the last period, likewise
-  bool holding_ = false;      // by this bridge
+  bool stopped_ = false;      // stopped by a cause that is not cleared yet
+  bool armed_ = false;        // a period without ENABLE has arrived since the last stop
+  bool path_wanted_ = false;  // the last period requests the path, and armed_ permits it
+  bool holding_ = false;      // this bridge has set the hold
   bool clear_seen_ = false;   // the last period had CLEAR
-  bool inside_ = false;       // of a call that waits: periods are looked at, and move nothing
+  bool inside_ = false;       // in a call that waits: periods are read, but move nothing
   std::uint32_t last_flags_ = 0;
   std::uint32_t index_refused_ = 0;
   bool hal_there_ = false;

@@ -1,4 +1,5 @@
-// Settings of the HAL component laid over those of the machine file. Pure functions and writes to a card that stands.
+// Combines the settings of the HAL component with those of the machine file; the component's take precedence. Pure
+// functions, and writes to a card at rest.
 #pragma once
 
 #include <array>
@@ -11,14 +12,14 @@
 
 namespace trammel::linuxcnc {
 
-// By joint, which is an axis of the card: pulses per mm or degree of the machine file, or of the component.
+// Pulses per mm or degree, by joint (an axis of the card): the component's value, or that of the machine file.
 std::array<double, card_map::kMaxAxes> pulses_per_unit(const machine::Machine& machine,
                                                        const trammel_settings& settings);
-// Largest speeds: the component's, or those of the machine file and 5 % more, for what LinuxCNC's and the card's clock
-// differ by. The lead likewise: the component's, or 2.
+// Maximum speeds: the component's, or those of the machine file plus 5 % for the difference between LinuxCNC's clock
+// and the card's. Lead: the component's, or 2.
 ServoSettings servo_settings(const machine::Machine& machine, const trammel_settings& settings);
-// Writes the step times: the component's where it gives them, else the machine file's. Errors as of
-// driver::Card::configure_axis().
+// Writes the step times: the component's if given, otherwise the machine file's. Throws as
+// driver::Card::configure_axis() does.
 void configure_joints(driver::Card& card, const machine::Machine& machine, const trammel_settings& settings);
 
 }  // namespace trammel::linuxcnc

@@ -1,6 +1,6 @@
-// The owner's end of the ring of path operations: takes them from the shared memory at once, so that a pause or an
-// abort behind a thousand lines is seen, and keeps the segments until the planner asks for them. One thread; the other
-// end is the planner module's, in another process.
+// The owner's end of the ring of path operations. It takes operations from the shared memory at once, so that a pause
+// or an abort after a thousand lines is seen, and keeps the segments until the planner asks for them. Used by one
+// thread; the other end is the planner module's, in another process.
 #pragma once
 
 #include <cstddef>
@@ -14,30 +14,31 @@ namespace trammel::linuxcnc {
 
 class PathQueue {
  public:
-  // `region` must outlive it. What stands in the ring is dropped: it was meant for an owner before this one.
+  // `region` must outlive the queue. Operations already in the ring are dropped, because they were meant for an earlier
+  // owner.
   explicit PathQueue(trammel_region& region);
 
-  // Takes what has come, up to the first operation that needs the card at rest (abort, clear, set pose). Gives back
-  // whether segments came. Those that come behind refuse() are dropped.
+  // Takes the operations that have arrived, up to the first one that needs the card at rest (abort, clear, set pose).
+  // Returns whether it took segments. Segments after refuse() are dropped.
   bool take();
 
-  // The last pause or resume: true from a pause on.
+  // The state after the last pause or resume: true after a pause.
   bool paused() const { return paused_; }
-  // The next segment, none before one has come; until the next call of pop() or drop().
+  // The next segment, or null if there is none; valid until the next call of pop() or drop().
   const trammel_operation* front() const { return segments_.empty() ? nullptr : &segments_.front(); }
   void pop() { segments_.pop_front(); }
   std::size_t size() const { return segments_.size(); }
-  // The operation that needs the card at rest, behind all segments of the queue.
+  // The operation that needs the card at rest, after all segments of the queue.
   const std::optional<trammel_operation>& barrier() const { return barrier_; }
-  // Abort and clear end the motion at once; set pose waits for its end.
+  // Whether the motion must stop: abort and clear end it at once; set pose waits for its end.
   bool wants_stop() const { return barrier_ && barrier_->kind != TRAMMEL_SET_POSE; }
-  // It is in force. An abort and a clear end a pause and refuse() too.
+  // Call when the barrier operation is executed. An abort or a clear also ends a pause and the effect of refuse().
   void finish_barrier();
-  // Segments go; what comes until an abort or a clear is dropped as well.
+  // Drops all segments, and also those that arrive before the next abort or clear.
   void refuse();
   void drop() { segments_.clear(); }
 
-  // Operations dealt with since the ring began, for trammel_status.operations_done.
+  // Number of operations processed since the ring began, for trammel_status.operations_done.
   std::uint64_t done() const { return taken_ - (barrier_ ? 1 : 0); }
   bool empty() const { return segments_.empty() && !barrier_; }
 

@@ -1,13 +1,13 @@
-// The path operations of LinuxCNC's planner module on a card: each becomes a line of G-code, and run::Runner plans and
-// streams them as they come. While no operation has come for a moment the motion ends at rest, before the card could
-// run dry, and the next operation begins a new run from there. One thread.
+// Executes the path operations of LinuxCNC's planner module on a card. Each operation becomes a line of G-code;
+// run::Runner plans and streams the lines as they arrive. If no operation arrives for a moment, the motion ends at rest
+// before the card could run out of commands, and the next operation starts a new run from there. Used by one thread.
 //
-// Coordinates: the card counts pulses and LinuxCNC says where it takes the machine to stand (TRAMMEL_SET_POSE, at
-// rest). The difference is kept in whole pulses; a pose within 0.75 pulses of where the card stands changes nothing, so
-// that jogs, which end between two pulses, do not let it drift.
+// Coordinates: the card counts pulses, and LinuxCNC gives the pose at which it assumes the machine to be
+// (TRAMMEL_SET_POSE, at rest). The difference is kept in whole pulses. A pose within 0.75 pulses of the card's position
+// changes nothing, so jogs, which end between two pulses, do not make the difference drift.
 //
-// Soft limits are LinuxCNC's, and the card's own guard; those of the machine file are not looked at here, since they
-// are in other coordinates.
+// LinuxCNC and the card itself enforce soft limits; those of the machine file are not used here, because they are in
+// other coordinates.
 #pragma once
 
 #include <cstddef>
@@ -32,25 +32,26 @@ class PathProgress;
 
 class PathServer final : public PathSide {
  public:
-  // `card` is open on `bus` and stands; region, card and bus must outlive it. Throws std::invalid_argument for a
-  // machine whose kinematics are not cartesian: LinuxCNC's trivkins is all that the planner module takes.
+  // `card` is open on `bus` and at rest; region, card and bus must outlive the server. Throws std::invalid_argument for
+  // a machine whose kinematics are not cartesian, because the planner module supports only LinuxCNC's trivkins.
   PathServer(trammel_region& region, driver::Card& card, run::AttentiveBus& bus, const machine::Machine& machine,
              PathUnits units);
   ~PathServer() override;
 
-  // Runs what the ring brings. `meanwhile` is called about once a millisecond, also while the card moves; when it gives
-  // false, the motion is stopped on the path and serve() returns with the card at rest. Throws driver::LinkError, and
-  // what `meanwhile` throws. Faults of the card end the path and show in write_status().
+  // Executes the operations of the ring. `meanwhile` is called about once per millisecond, also while the card moves.
+  // When it returns false, the motion is stopped on the path and serve() returns with the card at rest. Throws
+  // driver::LinkError, and exceptions of `meanwhile`. A fault of the card ends the path and is reported by
+  // write_status().
   void serve(const std::function<bool()>& meanwhile) override;
-  // The part of the status that tells of path operations, and TRAMMEL_STATUS_AT_REST among its flags.
+  // Writes the status of the path operations, and TRAMMEL_STATUS_AT_REST in the flags.
   void write_status(trammel_status& status) const override;
-  // Other step times or scales: only outside serve(). Where the machine stands is asked again.
+  // Sets new step times or scales: only outside serve(). The next operations need a new pose.
   void set_machine(const machine::Machine& machine);
 
  private:
   friend class PathLines;
   struct Segment {
-    std::size_t line = 0;  // of the run
+    std::size_t line = 0;  // line of the run
     std::uint64_t number = 0;
     std::int32_t id = 0;
     Pose end{};
@@ -81,23 +82,23 @@ class PathServer final : public PathSide {
   machine::Machine machine_;
   PathQueue queue_;
   std::unique_ptr<run::MachinePosition> position_;
-  planner::PathTicks ticks_;  // of the motions so far
+  planner::PathTicks ticks_;  // tick counts of the motions so far
   const std::function<bool()>* meanwhile_ = nullptr;
-  bool ending_ = false;  // `meanwhile` has said so
+  bool ending_ = false;  // `meanwhile` has returned false
 
-  std::unique_ptr<PathProgress> progress_;  // of the run under way, as the next four
-  std::deque<Segment> under_way_;           // read, and not passed
+  std::unique_ptr<PathProgress> progress_;  // of the current run, as the next four
+  std::deque<Segment> under_way_;           // segments that were read and have not ended
   bool probing_ = false;
   bool probe_met_ = false;
   bool stop_asked_ = false;
 
-  double feed_scale_ = -1;  // in force; below 0: none yet
+  double feed_scale_ = -1;  // scale in force; below 0: none yet
   double rapid_scale_ = -1;
   bool holding_ = false;
   driver::Snapshot now_;
-  std::uint64_t beat_ = 0;       // of the planner module; 0: none yet
-  std::uint64_t last_came_ = 0;  // card clock at which operations came last
-  std::uint64_t last_beat_ = 0;  // and the beat then
+  std::uint64_t beat_ = 0;       // last beat of the planner module; 0: none yet
+  std::uint64_t last_came_ = 0;  // card time at which operations last arrived
+  std::uint64_t last_beat_ = 0;  // beat at that time
   std::uint64_t speed_time_ = 0;
   Pose speed_at_{};
   trammel_status report_{};

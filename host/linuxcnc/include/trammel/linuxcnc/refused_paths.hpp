@@ -1,5 +1,5 @@
-// The side for path operations of an owner without a planner: takes each operation, and refuses lines and arcs by
-// name. The card stands meanwhile. One thread.
+// A PathSide for an owner without a planner: takes each operation, and refuses lines and arcs with a message. The card
+// is at rest meanwhile. Used by one thread.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace trammel::linuxcnc {
 
-// `region` must outlive it. serve() throws what `meanwhile` throws, and nothing else.
+// `region` must outlive the returned object. serve() throws only exceptions of `meanwhile`.
 std::unique_ptr<PathSide> refuse_paths(trammel_region& region);
 
 }  // namespace trammel::linuxcnc

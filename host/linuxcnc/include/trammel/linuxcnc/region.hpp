@@ -1,7 +1,7 @@
-// The owner's end of the memory that it shares with LinuxCNC's realtime modules (shared_region.h). Linux only: it needs
+// The owner's end of the memory shared with LinuxCNC's realtime modules (shared_region.h). Linux only: it needs
 // open-file-description locks and a futex.
 //
-// Thread-safety: one thread. The other ends live in other processes.
+// Thread safety: one thread. The other ends are in other processes.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace trammel::linuxcnc {
 
-// The memory cannot be had. what() names the file and says what to do.
+// The shared memory is not available. what() names the file and the remedy.
 class RegionError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -22,9 +22,9 @@ class RegionError : public std::runtime_error {
 
 class Region {
  public:
-  // Opens or creates the file of `name` (letters, digits, '-', '_'; at most 64) and becomes its owner. Periods and
-  // operations of before are dropped. Throws RegionError where another owner lives, where LinuxCNC's modules have
-  // another version, and for a name or a file that cannot be used.
+  // Opens or creates the file for `name` (letters, digits, '-', '_'; at most 64) and becomes its owner. Old periods and
+  // operations are dropped. Throws RegionError if another owner is alive, if LinuxCNC's modules have another version,
+  // and for a name or a file that cannot be used.
   explicit Region(const std::string& name, const std::string& folder = TRAMMEL_REGION_FOLDER);
   ~Region();
   Region(const Region&) = delete;
@@ -33,16 +33,17 @@ class Region {
   trammel_region& memory() { return *memory_; }
   const std::string& path() const { return path_; }
 
-  // Until the realtime side has woken this one since the last call, or for at most `longest` of the host's time.
+  // Waits until the realtime side has woken the owner since the last call, or for at most `longest` of the host's time.
   void wait(std::chrono::nanoseconds longest);
-  // The oldest period that was not taken yet.
+  // The oldest period not yet taken.
   std::optional<trammel_period> take_period();
-  // Settings of the HAL component, when they differ from those of the last call; none before there are any.
+  // Settings of the HAL component, if they differ from those of the last call; none before the component has written
+  // any.
   std::optional<trammel_settings> new_settings();
-  // Fills in session and beat.
+  // Publishes the status, with session and beat filled in.
   void publish(const trammel_status& status);
 
-  // Whether a process has attached as the HAL component, by its lock.
+  // Whether a process is attached as the HAL component; its lock shows it.
   bool has_hal() const { return locked_by_another(TRAMMEL_LOCK_HAL); }
   bool has_planner() const { return locked_by_another(TRAMMEL_LOCK_PLANNER); }
 

@@ -1,11 +1,12 @@
-// LinuxCNC's periods on a card by position streaming (driver::PositionStream): one line per period, to its target.
+// Executes LinuxCNC's periods on a card by position streaming (driver::PositionStream): one line per period, to its
+// target.
 //
-// Time. LinuxCNC's clock and the card's differ, and periods come unevenly. The stream keeps half a period less than
-// `lead` periods queued, by making each period at most 0.2 % longer or shorter. At rest it is quicker: it leaves out a
-// period where too many are queued, and doubles one where too few are. A period that never came is made up by a line
-// that is longer by it, so that the next target is met in time.
+// Timing. LinuxCNC's clock and the card's differ, and periods arrive unevenly. The stream keeps half a period less than
+// `lead` periods queued, by making each period up to 0.2 % longer or shorter. At rest the correction is faster: it
+// omits a period if too many are queued, and doubles one if too few are. If a period never arrived, the next line is
+// longer by its duration, so that the next target is reached on time.
 //
-// Thread-safety: as of the card. Nothing is allocated for a period.
+// Thread safety: as the card. Sending a period allocates no memory.
 #pragma once
 
 #include <array>
@@ -21,17 +22,17 @@ namespace trammel::linuxcnc {
 
 struct ServoSettings {
   unsigned lead = 2;                                   // periods, at least 1
-  unsigned stale_periods = 1;                          // that the card goes on for along its last line
-  std::array<double, card_map::kMaxAxes> max_speed{};  // pulses/s; 0: what the card can do
+  unsigned stale_periods = 1;                          // periods for which the card continues its last line
+  std::array<double, card_map::kMaxAxes> max_speed{};  // pulses/s; 0: the card's maximum
 };
 
-// Told what goes to the card.
+// Receives a record of all that is sent to the card.
 class ServoRecord {
  public:
   virtual ~ServoRecord() = default;
-  // `clock`: of the card; positions: pulses from machine zero.
+  // `clock`: card time; positions: pulses from machine zero.
   virtual void opened(std::uint64_t clock, const std::array<std::int64_t, card_map::kMaxAxes>& positions) = 0;
-  // A line that was sent: its duration, ns, and where it ends, 2^-24 pulses from machine zero.
+  // A line that was sent: its duration in ns, and its end in 2^-24 pulses from machine zero.
   virtual void line(const trammel_period& period, std::int64_t duration) = 0;
   virtual void closed(std::uint64_t clock) = 0;
 };
@@ -40,31 +41,33 @@ class ServoStream {
  public:
   using Pulses = std::array<std::int64_t, card_map::kMaxAxes>;
   struct Counts {
-    std::uint32_t late = 0;     // periods before which the card went on along its line
-    std::uint32_t dropped = 0;  // that never came
+    std::uint32_t late = 0;     // periods that arrived after the card had to continue its line
+    std::uint32_t dropped = 0;  // periods that never arrived
   };
 
-  // `card` must outlive it, and `record` where there is one.
+  // `card`, and `record` if given, must outlive the stream.
   explicit ServoStream(driver::Card& card, ServoRecord* record = nullptr) : card_(card), record_(record) {}
 
   bool is_open() const { return stream_ != nullptr; }
-  // Opens where the card stands, which is `from`, pulses from machine zero. Errors as of PositionStream's constructor.
+  // Opens at the card's present position, which is `from`, in pulses from machine zero. Throws as PositionStream's
+  // constructor does.
   void open(const ServoSettings& settings, const Pulses& from);
-  // Sends the period's line. `held`: the card stands in a hold. Errors as of PositionStream::send(); the stream is
-  // still open behind them.
+  // Sends the period's line. `held`: the card is at rest in a hold. Throws as PositionStream::send() does; the stream
+  // stays open then.
   void follow(const trammel_period& period, bool held);
-  // Whether the last line moved nothing: the card ends it at rest.
+  // Whether the last line had no motion: the card ends it at rest.
   bool at_rest() const { return resting_; }
-  // Ends the stream: at rest behind the last line, else on the card's ramp. Waits until the card stands. FaultError for
-  // a fault of another cause; else errors as of PositionStream::finish(). It is closed behind them.
+  // Ends the stream: after the last line if that ends at rest, otherwise on the card's ramp. Waits until the card is at
+  // rest. Throws FaultError for a fault with another cause; otherwise throws as PositionStream::finish() does. The
+  // stream is closed in all cases.
   void close();
-  // The same, always on the ramp: for a stream in which a period was refused.
+  // The same, but always on the ramp: for a stream in which a period was refused.
   void end_on_ramp();
-  // Behind a fault: waits until the card stands, and closes. Leaves the card's fault as it is.
+  // After a fault: waits until the card is at rest, and closes. Does not clear the card's fault.
   void abandon();
 
   const Counts& counts() const { return counts_; }
-  std::uint64_t ahead() const { return ahead_; }  // periods that have not begun, as the last one was sent
+  std::uint64_t ahead() const { return ahead_; }  // periods not yet begun when the last one was sent
   std::uint64_t last_period() const { return last_number_; }
 
  private:
@@ -76,8 +79,8 @@ class ServoStream {
   ServoRecord* record_;
   ServoSettings settings_;
   std::unique_ptr<driver::PositionStream> stream_;
-  Pulses origin_{};   // where the stream was opened, pulses from machine zero
-  Pulses rounded_{};  // the last target
+  Pulses origin_{};   // position at which the stream was opened, pulses from machine zero
+  Pulses rounded_{};  // the last target, in whole pulses
   bool resting_ = true;
   bool first_ = true;
   std::uint64_t last_number_ = 0;

@@ -1,4 +1,4 @@
-// Text from outside, such as a file's name, for a message.
+// Prepares untrusted text, such as a file name, for a message.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace trammel::machine {
 
-// One line of valid UTF-8: control characters and bytes that are no UTF-8 as escapes (\n, \t, \r, \x1b), cut to `most`
-// bytes, at least 3.
+// Converts the text to one line of valid UTF-8, cut to `most` bytes (at least 3). Control characters and bytes that are
+// not UTF-8 become escapes (\n, \t, \r, \x1b).
 std::string one_line(std::string_view text, std::size_t most);
 
-// Of a file's name.
+// Longest file name in a message, bytes.
 inline constexpr std::size_t kLongestName = 500;
 
 }  // namespace trammel::machine

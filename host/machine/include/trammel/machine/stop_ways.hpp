@@ -1,5 +1,5 @@
-// How far a machine goes on while it stops: what limit switches, soft limits and jogs need. Pure functions, of a
-// machine file alone.
+// Distances that a machine needs to stop, for the choice of limit switches, soft limits and jogs. Pure functions of a
+// machine file.
 #pragma once
 
 #include <optional>
@@ -9,19 +9,20 @@
 
 namespace trammel::machine {
 
-// Of an axis at its max_velocity v; mm, or degrees for A, B and C. T is hold_seconds(): from full speed to rest.
+// Stopping distance of an axis from its max_velocity v; mm, or degrees for A, B and C. T is hold_seconds(), the time
+// from full speed to rest.
 struct StopWay {
   double ramp = 0;  // v * T / 2
-  // Of an axis with a limit switch: what it goes while the filter and a scan of the inputs last.
+  // For an axis with a limit switch: the distance during the filter and a scan of the inputs.
   std::optional<double> filter;
 
-  // Behind the switch, until it stands.
+  // Total distance from the switch to rest.
   double behind_switch() const { return filter.value_or(0) + ramp; }
 };
 // By axis of the machine.
 std::vector<StopWay> stop_ways(const Machine& machine);
 
-// Whether the ramp of an axis fits behind its switch; true where it has none.
+// Whether the stopping distance of an axis fits into its overtravel; true for an axis without a limit switch.
 bool ramp_fits(const StopWay& way, const MachineAxis& axis);
 
 }  // namespace trammel::machine

@@ -1,4 +1,4 @@
-// The panel's page: made from web/ when the project is built, where Node and its packages are there.
+// The panel's page. The project's build makes it from web/ if Node and its packages are installed.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// A program that the page has sent: its text arrives in parts, its lines leave one at a time, each with its number as
-// an N word. Not thread-safe.
+// A program sent by the page: its text arrives in parts, and its lines are given out one at a time, each with its
+// number as an N word. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -18,24 +18,25 @@ class Program {
 
   struct Line {
     std::size_t number = 0;  // from 1
-    std::string text;        // as the controller takes it
+    std::string text;        // in the form for the controller
   };
 
   void begin_loading(const std::string& name);
-  // False: not loading, or more than kMost.
+  // Returns false if no program is being loaded, or if it has more than kMost bytes.
   bool append(std::string_view part);
-  // Checks each line; the reason where the program is refused.
+  // Checks each line; returns the reason if the program is refused.
   std::optional<std::string> finish_loading();
   void unload();
 
-  // From the first line on: next() gives the lines to be checked, then, after start(), to be run. False: no program.
+  // Starts at the first line: next() then gives the lines for the check and, after start(), for the run. Returns false
+  // if there is no program.
   bool check();
   void start();
-  // Nothing has moved yet.
+  // Ends the check with an error, before any motion.
   void end_check(const std::string& reason);
-  // The next line that is not empty; nothing behind the last one.
+  // The next line that is not empty; none after the last one.
   std::optional<Line> next();
-  // M2 or M30 was done: the lines behind it are not sent.
+  // Call after M2 or M30: the later lines are not sent.
   void skip_rest() { at_ = text_.size(); }
   void done() { phase_ = Phase::kDone; }
   void stop(const std::string& reason);
@@ -46,7 +47,7 @@ class Program {
   bool sent_all() const { return at_ >= text_.size(); }
   const std::string& name() const { return name_; }
   const std::string& text() const { return text_; }
-  // Rises with each program that was loaded.
+  // Increments with each loaded program.
   unsigned version() const { return version_; }
   std::size_t lines() const { return lines_; }
   std::size_t sent() const { return sent_; }  // number of the last line that was sent
@@ -62,7 +63,7 @@ class Program {
   std::string reason_;
   unsigned version_ = 0;
   std::size_t lines_ = 0;
-  std::size_t at_ = 0;    // byte of the next line
+  std::size_t at_ = 0;    // byte offset of the next line
   std::size_t read_ = 0;  // number of the last line that was read
   std::size_t sent_ = 0;
 };

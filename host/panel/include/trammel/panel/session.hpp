@@ -1,6 +1,6 @@
-// What the panel's page does to the machine, without a network: the page's messages in, its state out, a Grbl
-// controller behind it. The page's buttons become Grbl's lines and real-time bytes here. One thread: serve() may be
-// called from within MachineSide's `meanwhile`, work() in a loop around everything.
+// A session of the panel, without the network: takes the page's messages, gives its state, and drives a Grbl
+// controller. The page's buttons become Grbl's lines and real-time bytes here. Used by one thread: serve() may be
+// called from within MachineSide's `meanwhile`, work() only in the outermost loop.
 #pragma once
 
 #include <chrono>
@@ -18,10 +18,10 @@
 
 namespace trammel::panel {
 
-// A jog ends when the page has not said for so long that the key is held; a message of a jog that was under way for
-// longer counts for nothing.
+// A jog ends when the page has not confirmed for this time that the key is held. A message of a jog that was in transit
+// for longer is ignored.
 inline constexpr std::chrono::milliseconds kDeadMan{300};
-// A request for another motion that was under way for longer is refused.
+// A request for any other motion is refused if it was in transit for longer.
 inline constexpr std::chrono::milliseconds kLate{2000};
 
 class PanelSession {
@@ -29,29 +29,30 @@ class PanelSession {
   using TimePoint = std::chrono::steady_clock::time_point;
   using Now = std::function<TimePoint()>;
 
-  // `machine` and `settings` must outlive it.
+  // `machine` and `settings` must outlive the session.
   PanelSession(grbl::MachineSide& machine, grbl::Settings& settings, Now now = std::chrono::steady_clock::now);
 
   void begin() { controller_.begin(); }
 
-  // A page is there. It may take the place of another one.
+  // A page has connected; it may replace another one.
   void arrived();
-  // No page is there any more: a jog ends, and a program is held unless the page wanted otherwise.
+  // The page has disconnected: a jog ends, and a program is held unless the page has requested otherwise.
   void left();
-  // A message of the page, JSON: docs/developer/panel.md.
+  // Takes a message of the page, JSON: docs/developer/panel.md.
   void receive(std::string_view message);
 
-  // The dead man, and lines of the program; waits for nothing.
+  // Checks the dead man's time and sends lines of the program; does not wait.
   void serve();
-  // Around everything: the motion, homing or dwell that is due, to its end.
+  // For the outermost loop: executes the next motion, homing or dwell to its end.
   void work();
-  // Ends the motion on a ramp, as at the end of the process.
+  // Ends the motion on a ramp, for the end of the process.
   void stop();
   bool idle() const { return controller_.idle(); }
 
-  // What does not change while the session lasts, JSON.
+  // Data that do not change during the session, JSON.
   std::string hello() const;
-  // What the page shows, JSON; with the notes behind number `told`, which then is the last one's.
+  // The state that the page shows, JSON, with the notes after number `told`. Sets `told` to the number of the last
+  // note.
   std::string state(std::uint64_t& told);
   const Program& program() const { return program_; }
 
@@ -61,9 +62,9 @@ class PanelSession {
     std::uint64_t id = 0;
     std::size_t axis = 0;
     int way = 1;
-    double step = 0;   // mm; 0: until it is let go
-    double share = 0;  // of the axis's max_velocity
-    TimePoint held;    // when the page said so last
+    double step = 0;   // mm; 0: until the key is released
+    double share = 0;  // fraction of the axis's max_velocity
+    TimePoint held;    // time of the page's last confirmation
     bool sent = false;
   };
   struct Note {
@@ -106,20 +107,20 @@ class PanelSession {
   Now now_;
   TimePoint begun_;
   Program program_;
-  std::string heard_;  // an answer that is not whole yet
+  std::string heard_;  // an incomplete answer of the controller
   std::deque<Sent> sent_;
-  std::deque<std::string> commands_;  // that work() sends: they may move
+  std::deque<std::string> commands_;  // commands that work() sends, because they may move the machine
   std::optional<Jog> jog_;
-  std::uint64_t last_jog_ = 0;  // number of the last one that has ended or was refused
+  std::uint64_t last_jog_ = 0;  // number of the last jog that has ended or was refused
   std::deque<Note> notes_;
   std::uint64_t noted_ = 0;
   Alarm alarm_;
   bool hold_when_gone_ = true;
   bool page_ = false;
-  std::optional<grbl::Interpreter> check_;  // of the program that is to start
-  std::size_t line_ = 0;                    // of the program, that has begun last
+  std::optional<grbl::Interpreter> check_;  // interpreter for the check of the program before its start
+  std::size_t line_ = 0;                    // program line that has begun last
   bool homed_ = false;
-  TimePoint homed_at_;  // when it was asked
+  TimePoint homed_at_;  // time at which `homed_` was read
   grbl::Controller controller_;
 };
 

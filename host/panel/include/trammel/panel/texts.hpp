@@ -5,9 +5,9 @@
 
 namespace trammel::panel {
 
-// Of "error:N".
+// The text for "error:N".
 std::string error_text(int number);
-// Of "ALARM:N"; 0: the machine has not been homed since it was switched on.
+// The text for "ALARM:N"; 0: the machine has not been homed since it was switched on.
 std::string alarm_text(int number);
 
 }  // namespace trammel::panel

@@ -1,10 +1,11 @@
-// The commanded motion in time, from the commands alone: when the feed generator makes each tick, and speed,
-// acceleration and jerk between. Time is the motion clock: enabled clocks of the card, which stand in holds and
-// barriers. Not thread-safe.
+// Computes the commanded motion in time from the commands: the time of each tick of the feed generator, and speed,
+// acceleration and jerk between. The time is the motion clock, which counts enabled clocks of the card and stops in
+// holds and barriers. Not thread-safe.
 //
-// A piece adds the rate R_k = r + k a + k (k - 1) / 2 j to the phase in each of the 32 clocks of its k-th update, never
-// less than its floor (which a piece is taken to meet once at most); the next one's rate is in force 6 clocks after the
-// clock that brings the piece's last tick. The sums are taken in doubles: off by less than a clock.
+// A piece adds the rate R_k = r + k a + k (k - 1) / 2 j to the phase in each of the 32 clocks of its k-th update. The
+// rate is never below the piece's floor (it is assumed to meet the floor at most once). The next piece's rate takes
+// effect 6 clocks after the clock of the piece's last tick. The sums are computed in doubles, with an error of less
+// than a clock.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +16,12 @@
 
 namespace trammel::report {
 
-// A stretch of one path under one piece.
+// A part of one path within one feed piece.
 struct MotionSegment {
-  std::uint64_t path = 0;    // as it was given
+  std::uint64_t path = 0;    // as passed to path()
   std::uint64_t clocks = 0;  // duration
-  // Where it begins: ticks a clock, a clock^2, a clock^3. The stairs of the updates are taken as the curve through
-  // their middles.
+  // Values at the beginning: ticks per clock, per clock^2, per clock^3. The steps of the updates are replaced by the
+  // curve through their middles.
   double rate = 0;
   double acceleration = 0;
   double jerk = 0;
@@ -31,31 +32,31 @@ class MotionClock {
   using Sink = std::function<void(const MotionSegment&)>;
   explicit MotionClock(Sink sink) : sink_(std::move(sink)) {}
 
-  // In the order of the stream. Ticks count from the start of the program.
+  // Call in the order of the stream. Ticks count from the start of the program.
   void piece(const driver::FeedCommand& piece);
   void path(std::uint64_t path, std::uint64_t ticks);
-  // What has come so far ends at rest.
+  // All commands so far end at rest.
   void barrier();
 
-  // Of all paths so far.
+  // Total ticks of all paths so far.
   std::uint64_t ticks() const { return path_ticks_; }
-  // Behind a barrier: the clock at which the next piece begins.
+  // After a barrier: the clock at which the next piece begins.
   std::uint64_t next_begins() const { return clock_; }
-  // The clock that brings a tick. Of ascending ticks, each of a path whose pieces were given.
+  // The clock of a tick. Ticks must ascend, and the pieces of their paths must have been given.
   std::uint64_t clock_of(std::uint64_t tick);
 
  private:
-  // A piece from the clock on at which its rate is in force.
+  // A piece, from the clock at which its rate takes effect.
   class Piece {
    public:
     Piece(const driver::FeedCommand& piece, std::uint64_t clock, double ticks, std::uint64_t end_tick);
     std::uint64_t clock() const { return clock_; }
     std::uint64_t end_tick() const { return end_tick_; }
-    // Ticks, fractions counted, since the start of the program when so many clocks of it are over.
+    // Ticks, including fractions, from the start of the program to `clocks` clocks of the piece.
     double ticks_after(std::uint64_t clocks) const;
-    // The clocks after which that first reaches a tick.
+    // The number of clocks after which ticks_after() first reaches `tick`.
     std::uint64_t clocks_to(double tick) const;
-    // After so many of the `all` clocks that it lasts.
+    // The segment that begins after `clocks` of the piece's `all` clocks.
     MotionSegment at(std::uint64_t clocks, std::uint64_t all) const;
 
    private:
@@ -69,9 +70,9 @@ class MotionClock {
     double acceleration_;
     double jerk_;
     double floor_;
-    double bound_from_;  // from this update on
-    double bound_to_;    // and before this one
-    double bound_rate_;  // the rate is this
+    double bound_from_;  // from this update on,
+    double bound_to_;    // and before this one,
+    double bound_rate_;  // the rate has this value
   };
   struct Path {
     std::uint64_t path;
@@ -86,13 +87,13 @@ class MotionClock {
     Piece piece;
     std::uint64_t end_clock;
   };
-  std::deque<Closed> waiting_;  // for the paths that they move
-  std::deque<Path> paths_;      // not yet emitted to their ends
-  std::deque<Piece> pieces_;    // for clock_of()
+  std::deque<Closed> waiting_;  // pieces that wait for their paths
+  std::deque<Path> paths_;      // paths not completely emitted
+  std::deque<Piece> pieces_;    // pieces for clock_of()
   std::uint64_t emitted_ = 0;   // clocks
   std::uint64_t piece_ticks_ = 0;
   std::uint64_t path_ticks_ = 0;
-  std::uint64_t clock_ = 0;  // where the next piece begins
+  std::uint64_t clock_ = 0;  // begin of the next piece
   double begin_ = 0;
   bool open_ = false;  // the last piece's end is not yet known
 };

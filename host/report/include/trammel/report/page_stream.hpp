@@ -1,10 +1,9 @@
-// A stream of bytes in a page: deflated (zlib's format), in base64, in as many script elements as it takes, so that
-// several streams can be written side by side in bounded memory. Not thread-safe.
+// A stream of bytes in a page: deflated (zlib's format), in base64, divided into as many script elements as necessary.
+// Several streams can thus be written concurrently in bounded memory. Not thread-safe.
 //
 //     <script type="text/plain" data-stream="NAME">base64</script>
 //
-// The base64 texts of a stream's elements, in order, each decode to bytes; all of these together are the deflated
-// stream.
+// Each base64 text of a stream's elements decodes to bytes; in order, these bytes form the deflated stream.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +25,9 @@ class PageStream {
   PageStream& operator=(const PageStream&) = delete;
 
   void bytes(std::string_view text);
-  // 7 bits a byte, the lowest first; the highest bit says that more follow.
+  // 7 bits per byte, the lowest first; the highest bit indicates that more bytes follow.
   void varint(std::uint64_t value);
-  // 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
+  // Encodes 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
   void zigzag(std::int64_t value) {
     const auto bits = static_cast<std::uint64_t>(value);
     varint(bits << 1 ^ (value < 0 ? ~std::uint64_t{0} : 0));
@@ -36,7 +35,7 @@ class PageStream {
   // Little endian.
   void number(float value);
   void number(double value);
-  // Writes what is left; nothing may follow.
+  // Writes the rest; nothing may follow.
   void finish();
 
  private:
@@ -49,11 +48,11 @@ class PageStream {
   run::TextSink& sink_;
   std::string name_;
   std::unique_ptr<Deflate> deflate_;
-  std::vector<unsigned char> pending_;   // not yet deflated
-  std::vector<unsigned char> deflated_;  // not yet written
+  std::vector<unsigned char> pending_;   // bytes not yet deflated
+  std::vector<unsigned char> deflated_;  // bytes not yet written
 };
 
-// The same bytes as base64 text, with '=' at the end where it is needed.
+// The bytes as base64 text, with '=' at the end where necessary.
 std::string base64(const unsigned char* data, std::size_t size);
 
 }  // namespace trammel::report

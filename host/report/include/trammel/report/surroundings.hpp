@@ -1,6 +1,6 @@
-// What stands around the card while a run goes on, for its page: the levels at the card's inputs, and how far the
-// pulses of each axis are ahead of the carriage that they move. Streams of the page (PageStream), in memory that does
-// not grow with the run; docs/developer/report.md has their layout. Not thread-safe.
+// Records the surroundings of the card during a run, for the run's page: the levels at the card's inputs, and the
+// distance by which the pulses of each axis are ahead of its carriage. Written as streams of the page (PageStream), in
+// memory that does not grow with the run; docs/developer/report.md has their layout. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -15,20 +15,20 @@ namespace trammel::report {
 
 class Surroundings {
  public:
-  // Bit of levels that is the emergency stop's pin; those below are the inputs.
+  // The bit of `levels` for the emergency stop's pin; the lower bits are the inputs.
   static constexpr unsigned kEmergencyStop = 32;
-  // Of each second of the card as many differences of an axis are kept at most.
+  // Largest number of differences kept per axis and second of card time.
   static constexpr std::uint32_t kBlocks = 200;
 
-  // `least`: pulses, by axis, > 0: a difference that has changed by less since the one kept last is not kept. `levels`:
-  // at clock 0. The sink must outlive it, and have the page's head.
+  // `least`: pulses, by axis, > 0: a difference is kept only if it has changed by at least this since the last kept
+  // one. `levels`: at clock 0. The sink must outlive this object, and must already contain the page's head.
   Surroundings(run::TextSink& sink, std::uint32_t clock_hz, const std::vector<double>& least, std::uint64_t levels);
 
-  // Clocks ascend, of both. `levels` from this clock on, bit n: input n.
+  // `cycle` ascends in the calls of inputs() and of apart(). `levels` from this clock on, bit n: input n.
   void inputs(std::uint64_t cycle, std::uint64_t levels);
-  // Pulses, commanded less the carriage's place. Of a block of time the largest counts.
+  // `pulses`: commanded position minus the carriage's. The largest value in each block of time is kept.
   void apart(std::uint64_t cycle, std::size_t axis, double pulses);
-  // Before the page is finished.
+  // Call before the page is finished.
   void finish();
 
  private:
@@ -36,16 +36,16 @@ class Surroundings {
     std::unique_ptr<PageStream> stream;
     double least;
     std::uint64_t block = 0;
-    std::uint64_t cycle = 0;  // of the largest
-    double largest = 0;       // of the block
-    double last = 0;          // the difference that came last
+    std::uint64_t cycle = 0;  // clock of the largest difference
+    double largest = 0;       // largest difference in the block
+    double last = 0;          // the last difference
     std::uint64_t last_cycle = 0;
     std::uint64_t kept_cycle = 0;
     std::int64_t kept = 0;  // pulses
   };
   static void keep(Apart& axis, std::uint64_t cycle, double pulses);
 
-  std::uint64_t clocks_;  // of a block
+  std::uint64_t clocks_;  // clocks per block
   PageStream inputs_;
   std::uint64_t levels_;
   std::uint64_t cycle_ = 0;

@@ -1,6 +1,6 @@
-// The switches at a card's inputs, looked at and tried by hand: which inputs have roles, and whether each is active and
-// at rest when somebody presses and releases it. Reads alone: nothing of the card changes. Thread-safety: as of
-// driver::Card.
+// Shows the switches at a card's inputs and lets an operator test each by hand: lists the inputs that have roles, and
+// checks that an input becomes active when pressed and inactive when released. It only reads; nothing on the card
+// changes. Thread safety: as driver::Card.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace trammel::run {
 
-// An input that has roles.
+// An input that has at least one role.
 struct AssignedInput {
   unsigned input = 0;
   std::vector<driver::Role> roles;
@@ -22,15 +22,16 @@ struct AssignedInput {
   std::string text() const;  // "input 3 (limit minus of axis 0, home of axis 0)"
 };
 
-// As the card has them now, by input; none of a card without machine inputs. 64 reads.
+// The inputs with roles as the card has them now, in ascending order; empty for a card without machine inputs. 64
+// reads.
 std::vector<AssignedInput> assigned_inputs(driver::Card& card);
 
 enum class SwitchResult { kWorks, kActiveBefore, kNotPressed, kNotReleased };
 enum class SwitchStep { kPress, kRelease };
 
-// Waits, in card time, until the input, behind its filter, is active, and then until it is not, for `longest` each; one
-// that is active at first is released first, and is no good. `wanted` is called before each wait. Errors as of
-// driver::Card, and driver::InterruptedError where an InterruptScope ends a wait.
+// Waits until the filtered input is active, then until it is inactive, at most `longest` of card time for each. An
+// input that is active at first is only waited on until it is released, and the result is kActiveBefore. Calls `wanted`
+// before each wait. Throws as driver::Card does, and driver::InterruptedError when an InterruptScope ends a wait.
 SwitchResult try_switch(driver::Card& card, unsigned input, std::chrono::nanoseconds longest,
                         const std::function<void(SwitchStep)>& wanted);
 

@@ -1,5 +1,5 @@
-// A bus whose sleeps are short and call a function after each: so one thread serves others while a run waits for the
-// card. Not thread-safe.
+// A bus that divides each sleep into short ones and calls a function after each of them. One thread can thus serve
+// other clients while a run waits for the card. Not thread-safe.
 #pragma once
 
 #include <chrono>
@@ -14,9 +14,9 @@ namespace trammel::run {
 
 class AttentiveBus final : public driver::Bus {
  public:
-  // `bus` must outlive it. `longest`: of a sleep before the function is called, above 0.
+  // `bus` must outlive this object. `longest`: the longest sleep between two calls of the function, above 0.
   AttentiveBus(driver::Bus& bus, std::chrono::nanoseconds longest) : bus_(bus), longest_(longest) {}
-  // Called after each sleep, never from within itself. What it throws passes through sleep().
+  // `meanwhile` is called after each short sleep, but never from within itself. Its exceptions pass through sleep().
   void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
 
   std::size_t transfer(driver::Access* accesses, std::size_t count) override { return bus_.transfer(accesses, count); }
@@ -28,7 +28,7 @@ class AttentiveBus final : public driver::Bus {
   driver::Bus& bus_;
   std::chrono::nanoseconds longest_;
   std::function<void()> meanwhile_;
-  bool inside_ = false;  // of `meanwhile_`
+  bool inside_ = false;  // `meanwhile_` is running
 };
 
 }  // namespace trammel::run

@@ -1,7 +1,8 @@
-// The machine's place that a card keeps from one program to the next (trammel/driver/card_place.hpp), in the
+// The machine's place, which the card keeps from one program to the next (trammel/driver/card_place.hpp), in the
 // coordinates of a machine.
 //
-// Functions that take a card throw as driver::Card does, and are for the thread that uses it; the others are pure.
+// Functions that take a card throw as driver::Card does, and may be called only from the thread that uses the card; the
+// others are pure.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace trammel::run {
 
-// A program may not begin where the card stands. what() says why and what to do.
+// A program may not begin at the machine's present place. what() gives the reason and the remedy.
 class PlaceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -28,57 +29,62 @@ using driver::kNoScales;
 using driver::kScalesInPulses;
 using driver::read_card_place;
 
-// Hash of what turns pulses into coordinates: axes, scales, directions, kinematics. Neither of the two values above.
+// Hash of the data that turn pulses into coordinates: axes, scales, directions, kinematics. It never equals kNoScales
+// or kScalesInPulses.
 std::uint32_t scales_of(const machine::Machine& machine);
-// Whether coordinates of this machine may be read from the place; a place in pulses fits every machine.
+// Whether the place can be converted to coordinates of this machine. A place in pulses fits every machine.
 bool scales_fit(const CardPlace& place, const machine::Machine& machine);
 
-// Where the machine stands; zeros where no place was set. The card has an axis for each of the machine's motors.
+// The machine's coordinates at this place; zeros if no place was set. The card has an axis for each of the machine's
+// motors.
 gcode::Coordinates standing_at(const machine::Machine& machine, const CardPlace& place);
-// Axes with a motor that is missing in `motors` (bit n: axis n of the card), as letters with blanks between; "" if
-// none.
+// Letters, separated by blanks, of the axes with a motor that is missing in `motors` (bit n: axis n of the card); "" if
+// there are none.
 std::string axes_without(const machine::Machine& machine, std::uint8_t motors);
 
-// How a program begins.
+// The starting conditions of a program.
 struct Start {
   gcode::Coordinates at{};
-  machine::Machine machine;  // soft limits hold for homed axes alone
-  std::string limits_off;    // letters of the axes whose soft limits do not hold, as axes_without()
+  machine::Machine machine;  // with soft limits for homed axes only
+  std::string limits_off;    // letters of the axes whose soft limits are not enforced, in the format of axes_without()
 };
-// `trust`: a place that was lost is taken for the machine's. Throws PlaceError for a place that was lost, for one in
-// other scales, and where the machine requires homed axes.
+// `trust`: accept a lost place as the machine's place. Throws PlaceError if the place is lost and `trust` is false, if
+// the place is in other scales, or if the machine requires homed axes and an axis is not homed.
 Start start_at(const machine::Machine& machine, const CardPlace& place, bool trust);
-// The same for a line in pulses of the card's axes in `moved`.
+// The same check, without that of the scales, for a line in pulses that moves the card's axes in `moved`.
 void check_line(const machine::Machine& machine, const CardPlace& place, std::uint8_t moved, bool trust);
 
-// Soft limits at the end of a line by `pulses`, by axis of the card. Throws PlaceError where the line would end beyond
-// one, and further out than it begins. Gives back the letters of axes whose limits do not hold: those that are not
-// homed, and all where the place is in other scales.
+// Checks the soft limits at the end of a line by `pulses`, which is indexed by axis of the card. Throws PlaceError if
+// the line would end beyond a limit and further out than it begins. Returns the letters of the axes whose limits are
+// not enforced: axes that are not homed, or all axes if the place is in other scales.
 std::string check_line_end(const machine::Machine& machine, const CardPlace& place,
                            const std::vector<std::int64_t>& pulses);
 
-// Bits of the machine's motors.
+// One bit for each motor of the machine (bit n: axis n of the card).
 std::uint8_t motors_of(const machine::Machine& machine);
-// Names of the card's axes, by number, for messages of faults: the letters of the machine's axes, then "second motor of
-// Y". With coupled motors (CoreXY) these are the axes in whose tables of the machine file switches and drives stand.
+// Names of the card's axes, by number, for fault messages: first the letters of the machine's axes, then entries such
+// as "second motor of Y". With coupled motors (CoreXY), a motor has the name of the axis whose table in the machine
+// file assigns its switches and drive.
 std::vector<std::string> names_of_card_axes(const machine::Machine& machine);
 
-// The machine's soft limits in the card, as its last guard: for each axis that has min or max, a valid place, and a
-// motor of its own (with CoreXY X and Y have none, and their limits are the host's alone). An end that the machine does
-// not give is as far away as the card can count. None where the place is in other scales; the others are switched off.
-// The card's reaction to them becomes the machine's. Does nothing on a card without soft limits.
+// Writes the machine's soft limits to the card, as the last guard: for each axis that has min or max, a valid place,
+// and a motor of its own. With CoreXY, X and Y have no motor of their own, so only the host enforces their limits. If
+// the machine gives only one end, the other end is as far away as the card can represent. If the place is in other
+// scales, no limit is written. The limits of all other axes are switched off. Also sets the card's reaction to a soft
+// limit as in the machine file. Does nothing on a card without soft limits.
 void guard_soft_limits(driver::Card& card, const machine::Machine& machine, const CardPlace& place);
-// The same of homed axes alone, for a machine that is none of start_at().
+// The same for homed axes only, for a machine that does not come from start_at().
 void guard_homed_axes(driver::Card& card, const machine::Machine& machine, const CardPlace& place);
 
-// Machine zero so that the axes in `named` (bit n: axis n of the machine) stand at `at`, mm; the other coordinates
-// stay. Motors in `homed` (bit n: axis n of the card) count as homed, the others that move with a named axis do not.
-// Throws PlaceError where the other axes' place does not tell where these stand.
+// Sets machine zero so that the axes in `named` (bit n: axis n of the machine) are at the coordinates `at`, in mm; the
+// other coordinates do not change. Motors in `homed` (bit n: axis n of the card) become homed; the other motors that
+// move with a named axis become not homed. Throws PlaceError if the place is in other scales and not all axes are
+// named, or if a named axis shares a motor whose place was lost with an axis that is not named.
 void place_axes(driver::Card& card, const machine::Machine& machine, unsigned named, const gcode::Coordinates& at,
                 std::uint8_t homed);
 
-// Sets machine zero of the axes named by `letters` where the card stands, and whether they count as homed. Throws
-// PlaceError for a letter that the machine lacks, and where the other axes' place does not tell where these stand.
+// Sets machine zero of the axes named by `letters` to the card's present position, and sets whether they are homed.
+// Throws PlaceError for a letter that the machine lacks, and as place_axes() does.
 void set_zero(driver::Card& card, const machine::Machine& machine, const std::string& letters, bool homed);
 
 }  // namespace trammel::run

@@ -1,5 +1,5 @@
-// The commanded course of a program for its picture, taken from the first pass: thinned points, and a stretch to
-// magnify. Not thread-safe.
+// The commanded path of a program for its plot, recorded in the first pass: thinned points, and a stretch to magnify.
+// Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ class CommandedCourse final : public Observer {
   void planned(const planner::PlannedBlock& planned, std::uint64_t first) override;
 
   std::vector<PathPoint> points() const { return points_.points(); }
-  // The path that shows single pulses best, an arc rather than a line: its number, and its beginning.
+  // The path command that shows single pulses best (an arc rather than a line): its number, and the points at its
+  // beginning.
   std::optional<std::uint64_t> detail_command() const { return detail_command_; }
   const std::vector<Point>& detail() const { return detail_; }
 

@@ -1,10 +1,10 @@
-// Measures how far the executed path strays from the commanded one, from path steps and commands alone; of an arc in
-// chords, whose command does not say its centre, from the block that it comes from. A helix is judged in its plane.
-// Definitions (design of the JSON summary): positions are compared after all steps of a tick; a line's deviation is
-// the perpendicular distance from the straight line between its integer end points, in the space of its moving axes;
-// an arc's is the distance outside the annulus between the radii of its integer start and end; an ellipse's (a circle
-// on axes of unequal steps/mm) likewise, to the first order, from the ellipse that the card is given. Unit: pulses. Not
-// thread-safe.
+// Measures how far the executed path deviates from the commanded one, from path steps and commands. The command of an
+// arc in chords does not give its centre; the meter takes it from the planner's block. A helix is measured in its
+// plane. All steps of a tick are applied before positions are compared.
+// The deviation of a line is the perpendicular distance from the straight line between its integer end points, in the
+// space of its moving axes. The deviation of an arc is the distance outside the annulus between the radii of its
+// integer start and end. The deviation of an ellipse (a circle on axes of unequal steps/mm) is measured in the same way
+// from the ellipse that the card is given, to first order. Unit: pulses. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -20,10 +20,10 @@ namespace trammel::run {
 
 class DeviationMeter {
  public:
-  // The block whose commands follow.
+  // Announces the block to which the following commands belong.
   void sending(const planner::Block& block);
 
-  // Announces a command in stream order; `number` is its unwrapped number. Only paths are kept.
+  // Announces a command in stream order; `number` is its unwrapped number. Only path commands are kept.
   void command(std::uint64_t number, const driver::Command& command);
 
   // One step of the path: command number, tick within the path, axis, direction (+1 or -1).
@@ -32,9 +32,9 @@ class DeviationMeter {
   // Call once after the last step.
   void finish();
 
-  // Where it was: line of the program, machine coordinates in pulses.
+  // Where the largest deviation occurred: program line, and machine coordinates in pulses.
   struct Place {
-    std::size_t line = 0;  // 0: nowhere
+    std::size_t line = 0;  // 0: no deviation
     planner::Pulses position{};
   };
   double largest_line() const { return largest_line_; }
@@ -45,18 +45,18 @@ class DeviationMeter {
  private:
   struct Path {
     std::uint64_t number = 0;
-    std::size_t line = 0;  // of the program
+    std::size_t line = 0;  // line of the program
     bool arc = false;
     std::array<unsigned, card_map::kMaxAxes> axes{};  // indices of the moving axes
     unsigned axis_count = 0;
-    bool of_machine = false;                          // the arc's centre is not yet relative to the start
+    bool of_machine = false;                          // the centre is still in machine coordinates
     std::array<double, card_map::kMaxAxes> target{};  // line: displacement; arc: centre relative to the start (x, y)
     double inner = 0;                                 // arc: radii of the annulus
     double outer = 0;
     double length = 0;  // line: length of the displacement
-    double semi_x = 0;  // of an ellipse; 0: a circle
+    double semi_x = 0;  // semi-axis of an ellipse; 0: a circle
     double semi_y = 0;
-    // Of an arc: a point's distance from its centre, or from its ellipse.
+    // For an arc: a point's distance from the centre, or from the ellipse.
     double level(double x, double y) const;
   };
   void measure();
@@ -66,8 +66,9 @@ class DeviationMeter {
 
   std::deque<Path> paths_;
   std::array<std::int64_t, card_map::kMaxAxes> position_{};  // relative to the current path's start
-  std::optional<planner::Pulses> machine_;                   // the same in machine coordinates; from the first block on
-  planner::Block block_;                                     // being sent
+  std::optional<planner::Pulses> machine_;                   // the position in machine coordinates; set at the first
+                                                             // block
+  planner::Block block_;                                     // block that is being sent
   std::optional<std::uint64_t> tick_;
   double largest_line_ = 0;
   double largest_arc_ = 0;

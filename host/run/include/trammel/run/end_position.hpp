@@ -1,4 +1,4 @@
-// Where the machine stands. Pure.
+// The position of the machine, as numbers and as text. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace trammel::run {
 
 struct EndPosition {
   std::string axes;                  // letters of the machine's axes, in the card's order
-  std::vector<std::int64_t> pulses;  // by axis of the card, from machine zero on
-  std::vector<double> millimetres;   // by axis of the machine; degrees of a rotary axis
+  std::vector<std::int64_t> pulses;  // by axis of the card, relative to machine zero
+  std::vector<double> millimetres;   // by axis of the machine; degrees for a rotary axis
   bool joint_for_each_axis = true;   // no motor moves two axes
 };
 
@@ -23,7 +23,7 @@ EndPosition end_position(const machine::Machine& machine, const std::vector<std:
 // "mm", or "degrees" for a rotary axis.
 const char* unit_of(char letter);
 
-// "X 10.0000 Y 0.0000 mm", of all axes; "X 10.0000 mm A 30.0000 degrees" where some are rotary.
+// All axes, such as "X 10.0000 Y 0.0000 mm", or "X 10.0000 mm A 30.0000 degrees" if some axes are rotary.
 std::string place_text(const gcode::Coordinates& place, const machine::Machine& machine);
 
 }  // namespace trammel::run

@@ -1,4 +1,4 @@
-// Measures the feed that a run achieves beside the one that the program asks for. Not thread-safe.
+// Compares the feed that a run achieves with the programmed one. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace trammel::run {
 
-// Over all motions with a feed, rapids and dwells left out. A motion's time goes from the last step of the path before
-// it to its own last one; behind a dwell, and at the start, from its own first one.
+// Averages over all motions with a feed; rapids and dwells are excluded. The time of a motion is counted from the last
+// step of the previous path to its own last step. After a dwell and at the start of the program it is counted from the
+// motion's own first step.
 class FeedMeter final : public driver::StepSink, public Observer {
  public:
   explicit FeedMeter(double clock_hz) : clock_hz_(clock_hz) {}
@@ -21,7 +22,7 @@ class FeedMeter final : public driver::StepSink, public Observer {
   void pin_step(const driver::PinStep& /*step*/) override {}
   void path_step(const driver::PathStep& step) override;
 
-  // Mean along the path, mm/min; none without a motion with feed.
+  // Mean feed along the path, mm/min; none if no motion has a feed.
   std::optional<double> commanded() const { return per_minute(wanted_seconds_); }
   std::optional<double> achieved() const { return per_minute(static_cast<double>(clocks_) / clock_hz_); }
 
@@ -35,11 +36,11 @@ class FeedMeter final : public driver::StepSink, public Observer {
 
   double clock_hz_;
   Kind block_ = Kind::kBarrier;
-  std::deque<Sent> sent_;  // to the geometry queue, from the one under way on
+  std::deque<Sent> sent_;  // commands sent to the geometry queue, from the current one on
   double length_ = 0;      // mm
   double wanted_seconds_ = 0;
   std::uint64_t clocks_ = 0;
-  std::optional<std::uint64_t> last_;  // clock of the step before
+  std::optional<std::uint64_t> last_;  // clock of the previous step
 };
 
 }  // namespace trammel::run

@@ -1,4 +1,5 @@
-// Gathers the feeds that a program does not reach: one entry a cause, however long the program. Not thread-safe.
+// Collects the motions that do not reach their programmed feed: one entry per cause, however long the program is. Not
+// thread-safe.
 #pragma once
 
 #include <array>
@@ -8,20 +9,20 @@
 
 namespace trammel::run {
 
-// Blocks that do not reach their programmed feed for one cause.
+// Blocks that do not reach their programmed feed for the same cause.
 struct FeedNotReached {
   planner::SpeedLimit cause = planner::SpeedLimit::kNone;
   std::uint64_t count = 0;
-  // The first block of those that reach the smallest share of it.
+  // The block that reaches the smallest fraction of its feed; the first of them if several do.
   std::size_t line = 0;
-  double wanted = 0;   // mm/min, as F counts
+  double wanted = 0;   // mm/min, as programmed by F
   double reached = 0;  // mm/min
 };
 
 class FeedReport {
  public:
   void add(const planner::PlannedBlock& planned);
-  // The cause of most blocks first.
+  // Sorted by number of blocks, the most frequent cause first.
   std::vector<FeedNotReached> entries() const;
 
  private:

@@ -1,4 +1,4 @@
-// Where a run was interrupted, from what the card has kept of its stop. Pure, thread-safe.
+// Finds the place at which a run was interrupted, from the card's record of its stop. Pure, thread-safe.
 #pragma once
 
 #include <array>
@@ -11,17 +11,18 @@
 
 namespace trammel::run {
 
-// How a run begins.
+// The beginning of a run.
 struct RunBegin {
   RunSettings::Place place;
   std::uint64_t first = 0;  // counted commands of the program before the first one that is sent
-  bool silent = false;      // it begins with a silent piece
+  bool silent = false;      // the run begins with a silent feed piece
 };
-// Of a run with these settings, as it was planned.
+// The beginning of a planned run with these settings.
 RunBegin begin_of(const RunSettings& settings, const Plan& plan);
 
-// `zero`: MACHINE_ZERO by axis of the card. None where the card stopped at once in a motion: at which tick it stands is
-// not known then. A stop before the first step leaves the run at its begin.
+// The place at which the run was interrupted. `zero`: MACHINE_ZERO by axis of the card. None if the card cut a motion,
+// because the tick of the stop is then unknown. If the card stopped before the first step, the result is the place at
+// which the run begins.
 std::optional<RunSettings::Place> place_of(const RunBegin& begin, const driver::Rest& rest,
                                            const std::array<std::int32_t, card_map::kMaxAxes>& zero = {});
 

@@ -1,11 +1,13 @@
-// Jogging: axes moved by hand, one or several at once, for as long as somebody asks for it or by a distance. Every jog
-// is one path that ends at rest before the first soft limit, so nothing the host does or leaves undone leads beyond it.
-// Its feed is sent at once, its geometry in short lines, a little more than a stop ahead: where no more come, since the
-// host has died, the card's under-run hold ramps to a stop on the path. On a card without it the path is sent whole.
+// Jogging: moves one or several axes by hand, either for as long as the operator asks for it or by a distance. Every
+// jog is one path that ends at rest before the first soft limit, so no action or omission of the host leads beyond the
+// limit. The feed of the path is sent at once. The geometry is sent in short lines, a little more than a stop distance
+// ahead. If the host dies and no more lines arrive, the card's under-run hold ramps to a stop on the path. A card
+// without the under-run hold gets the whole path at once.
 //
-// The time base makes what the operator asks for on the way: another speed is another ratio, a stop is a hold; each is
-// one write to the card, in force some clocks later, and ramped with half of each axis's acceleration at most. While a
-// jog is under way the card's ratio, slew and hold are the jog's; then they are as before. Not thread-safe.
+// The time base executes the operator's changes: a new speed is a new ratio, and a stop is a hold. Each change is one
+// write to the card, takes effect some clocks later, and is ramped with at most half of each axis's acceleration.
+// During a jog, the jog controls the card's ratio, slew and hold; at its end it restores ratio and slew. Not
+// thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -21,32 +23,36 @@ namespace trammel::run {
 
 class Jog {
  public:
-  // The card is configured for the machine, and `position` is where it stands. All must outlive the jog; nobody else
-  // moves the card meanwhile.
+  // The card is configured for the machine, and `position` is its present position. All three must outlive the jog;
+  // nothing else moves the card during a jog.
   Jog(driver::Card& card, const machine::Machine& machine, MachinePosition& position);
 
-  // Begin at once; the card must be in position (driver::StateError). Velocities and distances by axis, mm/s and mm,
-  // machine directions; `speed` along the path of all axes, mm/s. Limits slow a jog down. Throw driver::ArgumentError
-  // for no motion, and where an axis stands at the soft limit that it would go to.
+  // Start a jog at once; the card must be in position (driver::StateError). Velocities in mm/s and distances in mm, by
+  // axis, in machine directions; `speed` in mm/s along the path of all axes. Limits of the machine slow a jog down.
+  // Throw driver::ArgumentError for no motion, or if an axis is already at the soft limit towards which it would move.
   //
-  // Up to a soft limit; the speed may be raised up to what the axes allow, unless the path is too short for that.
+  // Moves up to a soft limit. The speed may be raised up to the limits of the axes, unless the path is too short for
+  // that.
   void start(const gcode::Coordinates& velocity);
-  // By a distance, or to the first soft limit on the way; the speed may be lowered, and raised again up to `speed`.
+  // Moves by a distance, or to the first soft limit on the way. The speed may be lowered, and raised again up to
+  // `speed`.
   void start(const gcode::Coordinates& distance, double speed);
 
-  // How long the card goes on at the speed that it has when nobody calls moving(), before it begins to stop.
+  // Time for which the card keeps its present speed without a call of moving(), before it begins to stop.
   static constexpr double kAheadSeconds = 0.1;
 
-  // Of the jog under way, along its path, mm/s; gives back what it will be, within its limits. Not once it stops.
+  // Sets the speed of the current jog along its path, mm/s; returns the new speed, which is within the jog's limits.
+  // Has no effect once the jog is stopping.
   double set_speed(double speed);
   // Ramps to a stop.
   void stop();
 
-  // Whether it is under way still; sends what is to come next, so it must be called several times in kAheadSeconds.
-  // When it is over the position is known. Throws driver::FaultError, what driver::Stream::put() throws, and, at rest
-  // with the position known, driver::StoppedError where somebody has asked the card for a stop.
+  // Whether the jog is still in progress. Also sends the next lines, so it must be called several times in
+  // kAheadSeconds. When the jog is over, the position is up to date. Throws driver::FaultError, the exceptions of
+  // driver::Stream::put(), and driver::StoppedError if a stop was requested; in the last case the card is at rest and
+  // the position up to date.
   bool moving();
-  // Until it is over.
+  // Waits until the jog is over.
   void wait();
 
  private:
@@ -63,11 +69,11 @@ class Jog {
   driver::Card& card_;
   const machine::Machine& machine_;
   MachinePosition& position_;
-  std::optional<JogPath> path_;  // while one is under way
+  std::optional<JogPath> path_;  // while a jog is in progress
   std::optional<driver::Stream> stream_;
-  std::uint64_t line_ticks_ = 0;  // of each line but the last
+  std::uint64_t line_ticks_ = 0;  // feed ticks of each line except the last
   std::uint64_t sent_ticks_ = 0;
-  double ratio_ = 1;  // that the time base goes to
+  double ratio_ = 1;  // target ratio of the time base
   bool stopping_ = false;
   TimeBase before_{};
 };

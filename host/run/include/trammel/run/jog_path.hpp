@@ -1,4 +1,4 @@
-// The path of a jog, from where the machine stands to where it would end by itself. Pure functions.
+// The path of a jog, from the machine's present position to the point where the jog ends by itself. Pure functions.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,24 @@ struct JogPath {
   std::vector<driver::FeedCommand> pieces;
   std::uint64_t ticks = 0;   // feed ticks of the whole path
   std::uint8_t mask = 0;     // axes that move
-  planner::Pulses pulses{};  // start to end
+  planner::Pulses pulses{};  // from start to end
   double length = 0;         // mm along the path of all axes
-  double speed = 0;          // mm/s along it at full ratio
-  double ramp_seconds = 0;   // of the time base, from no ratio to full: half of each axis's acceleration at most
-  // It begins at full rate: the time base makes its ramp. Else the pieces begin at rest.
+  double speed = 0;          // mm/s along the path at full ratio
+  double ramp_seconds = 0;   // s, slew of the time base from ratio 0 to 1, at half of each axis's acceleration at most
+  // The feed pieces begin at full rate and the time base makes the ramp. Otherwise the pieces begin at rest.
   bool ramped_by_time_base = false;
-  // Feed ticks that a stop takes at full ratio, as the time base makes it: of the pieces that do not end at rest too.
+  // Feed ticks that a stop of the time base from full ratio takes; the value applies to all pieces of the path.
   std::uint32_t stop_distance = 0;
 };
 
-// Of its ticks those from `from` to `to`: a line that begins and ends at the pulse that is nearest there.
+// The part of the path from feed tick `from` to feed tick `to`, as a line that begins and ends at the nearest pulses.
 driver::LineCommand line_of(const JogPath& path, std::uint64_t from, std::uint64_t to);
 
-// From `here`, pulses, in the direction of `velocity` (mm/s by axis) to the first soft limit, or as far as the counters
-// go. Throws driver::ArgumentError where there is nothing to go.
+// From `here` (pulses) in the direction of `velocity` (mm/s by axis) to the first soft limit, or as far as the counters
+// reach. Throws driver::ArgumentError if the distance is zero.
 JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card, const planner::Pulses& here,
                  const gcode::Coordinates& velocity);
-// By `distance` (mm by axis), or to the first soft limit, at `speed` along the path, mm/s.
+// From `here` by `distance` (mm by axis) or to the first soft limit, at `speed` along the path, mm/s.
 JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card, const planner::Pulses& here,
                  const gcode::Coordinates& distance, double speed);
 

@@ -1,5 +1,5 @@
-// Where the machine stands, in machine coordinates. The card counts pulses from its reset on and nobody can write its
-// counters, so a position that is set is an offset of the host's. Not thread-safe.
+// The position of the machine in machine coordinates. The card counts pulses from its reset on and its counters cannot
+// be written, so a position that is set is an offset on the host. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,17 @@ namespace trammel::run {
 
 class MachinePosition {
  public:
-  // The machine stands at 0 where the card does now.
+  // The card's present position is machine position 0.
   MachinePosition(const driver::Snapshot& now, const machine::Machine& machine) : kinematics_(machine), last_(now) {}
 
-  // What the card says now. The counters wrap: at least one look in 2^31 pulses of an axis.
+  // Updates the position from a snapshot of the card. The counters wrap: call look() at least once in 2^31 pulses of an
+  // axis.
   void look(const driver::Snapshot& now);
-  // What the machine is told to stand at, mm (degrees), without moving; rounded to a pulse. The last look counts.
+  // Declares the axis to be at `millimetres` (degrees), without moving; rounded to a pulse. Applies to the position at
+  // the last look().
   void set(std::size_t axis, double millimetres);
 
-  // By axis of the card; and as the machine's axes stand.
+  // By axis of the card, and by axis of the machine.
   const planner::Pulses& pulses() const { return pulses_; }
   gcode::Coordinates millimetres() const { return kinematics_.coordinates(pulses_); }
 

@@ -1,4 +1,4 @@
-// What a run tells of itself while it goes. Called from the thread that runs; must not use the card.
+// Receives the events of a run in progress. Called from the thread that runs; must not use the card.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,25 @@
 
 namespace trammel::run {
 
-// How far the card is.
+// The progress of the card.
 struct Progress {
   std::uint32_t begun = 0;  // commands begun from the geometry queue, barriers too; wraps
-  std::size_t line = 0;     // of the program, that has begun last
+  std::size_t line = 0;     // line of the program whose command has begun last
   driver::Status status;
 };
 
 class Observer {
  public:
   virtual ~Observer() = default;
-  // First pass, before anything moves: a block whose first command has the number `first`.
+  // First pass, before anything moves: a block, and the number of its first command.
   virtual void planned(const planner::PlannedBlock& /*block*/, std::uint64_t /*first*/) {}
-  // Second pass: a block before its commands are written, and each of them with its number, which is not wrapped.
+  // Second pass: sending() before the commands of a block are written, and command() for each of them with its
+  // unwrapped number.
   virtual void sending(const planner::PlannedBlock& /*block*/) {}
   virtual void command(std::uint64_t /*number*/, const driver::Command& /*command*/) {}
-  // When the block's commands are written.
+  // After the block's commands were written.
   virtual void sent() {}
-  // Every now and then while the card runs.
+  // At intervals while the card runs.
   virtual void progress(const Progress& /*progress*/) {}
 };
 

@@ -1,4 +1,4 @@
-// What a card's outputs did: how often each was switched, and how they stand. Not thread-safe.
+// Records a card's outputs: the switching counts and the present level of each. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -17,19 +17,19 @@ class CsvWriter;
 class OutputRecorder final : public driver::StepSink {
  public:
   struct Output {
-    std::uint64_t on = 0;   // how often it rose
-    std::uint64_t off = 0;  // and fell
-    bool level = false;     // as it stands
+    std::uint64_t on = 0;   // rising edges
+    std::uint64_t off = 0;  // falling edges
+    bool level = false;     // present level
   };
 
-  // `list`: where every change goes as a row cycle,output,level; not owned, may be nullptr.
+  // `list`: gets every change as a row cycle,output,level; not owned, may be nullptr.
   explicit OutputRecorder(TextSink* list = nullptr);
   ~OutputRecorder() override;
 
   void pin_step(const driver::PinStep& /*step*/) override {}
   void path_step(const driver::PathStep& /*step*/) override {}
   void outputs_changed(const driver::OutputChange& change) override;
-  // Writes what is left of the list.
+  // Writes the rest of the list.
   void finish();
 
   const std::array<Output, machine::kMaxOutputs>& outputs() const { return outputs_; }

@@ -1,5 +1,5 @@
-// Tells whether two runs made the same path: the steps of the path, and how late each comes out of its shaper.
-// Not thread-safe.
+// Shows whether two runs made the same path (PathIdentity), and how late the shaper emits each step (ShaperDelay). Not
+// thread-safe.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace trammel::run {
 
-// A number for the list of path steps (command, tick, axis, direction), in their order, without the times. Equal lists
-// have equal numbers; lists that differ have different ones, but for one pair of lists in 2^64.
+// A hash of the list of path steps (command, tick, axis, direction), in their order, without the times. Equal lists
+// have equal hashes; two different lists have the same hash with a probability of 2^-64.
 class PathIdentity final : public driver::StepSink {
  public:
   void pin_step(const driver::PinStep& /*step*/) override {}
@@ -29,9 +29,10 @@ class PathIdentity final : public driver::StepSink {
   }
   std::uint64_t count() const { return count_; }
   std::string text() const;  // 16 hexadecimal digits
-  // Likewise without the commands' numbers, which begin anew where a run goes on.
+  // The same without the commands' numbers, which restart when an interrupted run goes on.
   std::string unnumbered_text() const;
-  // Likewise of axis and direction alone: also where the speeds were planned otherwise, and paths have other ticks.
+  // The same for axis and direction only. It is equal even if the speeds were planned differently and the paths have
+  // other tick counts.
   std::string order_text() const;
 
  private:
@@ -46,8 +47,8 @@ class PathIdentity final : public driver::StepSink {
   std::uint64_t count_ = 0;
 };
 
-// Clocks from a step of the path to its leading edge at the pins: what the shaper takes at least, and what it holds
-// steps back for pulse, space and direction times. The n-th pulse of an axis is its n-th step of the path.
+// Clocks from a step of the path to its leading edge at the pins: the shaper's minimum delay, plus the time for which
+// it holds steps back for pulse, space and direction times. The n-th pulse of an axis is its n-th step of the path.
 class ShaperDelay final : public driver::StepSink {
  public:
   struct Range {
@@ -55,15 +56,15 @@ class ShaperDelay final : public driver::StepSink {
     std::uint64_t most = 0;
   };
   void path_step(const driver::PathStep& step) override { waiting_[step.axis].push_back(step); }
-  // Throws std::runtime_error for a pulse that no step of the path asked for, or in the other direction.
+  // Throws std::runtime_error for a pulse that has no path step, or has the other direction.
   void pin_step(const driver::PinStep& step) override;
   // None before the first step.
   const std::optional<Range>& range() const { return range_; }
-  // Throws std::runtime_error when a step of the path has not come out.
+  // Throws std::runtime_error if a path step has not appeared at the pins.
   void finish() const;
 
  private:
-  std::array<std::deque<driver::PathStep>, card_map::kMaxAxes> waiting_;  // in the shapers: a few
+  std::array<std::deque<driver::PathStep>, card_map::kMaxAxes> waiting_;  // steps in the shapers; a few
   std::optional<Range> range_;
 };
 

@@ -1,4 +1,4 @@
-// Points of a path for a picture, few enough however long the path is. Not thread-safe.
+// Points of a path for a picture; their number is bounded for any length of path. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -11,21 +11,22 @@ using Point = std::array<double, 3>;  // the first three axes, in the picture's 
 
 struct PathPoint {
   Point at{};
-  bool rapid = false;  // of the way that leads here
+  bool rapid = false;  // the motion to this point is a rapid
 };
 
-// Keeps at most 2 * `limit` points, and the very last one: each at least a distance from the one kept before it, or the
-// first of another kind of way. The distance begins with 0 and grows as points come in.
+// Keeps at most 2 * `limit` points, and the very last one. A point is kept if it is at least a certain distance from
+// the previous kept one. Between a rapid and a feed motion an eighth of this distance is enough. The distance begins at
+// 0 and grows with the number of points.
 class PathPoints {
  public:
   explicit PathPoints(std::size_t limit) : limit_(limit) {}
   void add(const PathPoint& point);
   std::vector<PathPoint> points() const;
-  // Points were left out.
+  // Whether points were left out.
   bool thinned() const { return distance_ > 0; }
 
  private:
-  // Whether a point is kept after another one.
+  // Whether `point` is kept when `before` is the last kept one.
   bool keeps(const PathPoint& before, const PathPoint& point) const;
   void thin();
 

@@ -1,8 +1,10 @@
-// The speed along the path over time, from the intervals between the steps of each axis. A step's way is spread from
-// half of the interval before it to half of the one after it, so that a constant speed comes out constant; where one of
-// the two is more than four times the other (the axis stood still), as far as the shorter one. The time is divided into
-// bins of equal width, which doubles when the run outgrows them; the axes are put together in each, so a sample, which
-// is the mean of kFine bins, is right where the direction turns within it. Not thread-safe.
+// The speed along the path over time, from the intervals between the steps of each axis. The distance of a step is
+// spread over the time from half of the interval before it to half of the interval after it, so a constant speed gives
+// a constant result. If one interval is more than four times the other (the axis was at rest), the shorter one replaces
+// it.
+// Time is divided into bins of equal width, which doubles when the run outgrows them. The axes are combined within each
+// bin and a sample is the mean of kFine bins, so a sample is correct even if the direction turns within it. Not
+// thread-safe.
 #pragma once
 
 #include <array>
@@ -15,12 +17,12 @@ namespace trammel::run {
 class PathSpeed {
  public:
   explicit PathSpeed(double clock_hz) : clock_hz_(clock_hz) {}
-  // A step of `way` >= 0, in the picture's unit, of one of the first three axes. Cycles ascend on each axis.
+  // A step of `way` >= 0 (in the unit of the picture) on one of the first three axes. `cycle` ascends on each axis.
   void add(std::uint64_t cycle, std::size_t axis, double way);
 
   struct Sample {
     double seconds;
-    double speed;  // units/s, the mean
+    double speed;  // mean, units/s
   };
   std::vector<Sample> samples() const;
 
@@ -29,12 +31,12 @@ class PathSpeed {
   static constexpr std::size_t kBins = 1024 * kFine;
   static constexpr std::size_t kAxes = 3;
 
-  // A step that waits for the interval after it.
+  // A step that waits for the length of the interval after it.
   struct Waiting {
     bool any = false;
     double cycle = 0;
     double way = 0;
-    double interval = 0;  // before it; 0: it is the axis's first
+    double interval = 0;  // interval before the step, clocks; 0: first step of the axis
   };
   using Bins = std::vector<std::array<double, kAxes>>;
 

@@ -1,4 +1,4 @@
-// How the speed of a run changes along the path, and why so. Pure.
+// The kind of speed profile of a run, and its reason. Pure.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 namespace trammel::run {
 
 struct PlannedProfile {
-  bool s_curve = false;      // otherwise trapezoids
-  std::string without_jerk;  // letters of the axes for which it is a trapezoid; empty where the settings name a profile
+  bool s_curve = false;      // S-curve; otherwise trapezoidal
+  std::string without_jerk;  // letters of axes that make it trapezoidal; empty if the settings name a profile
 };
 
 PlannedProfile planned_profile(const machine::Machine& machine, const RunSettings& settings);

@@ -1,5 +1,5 @@
-// The picture of a run: the commanded path with the pulses on it, in the plane that matters or in three views, a
-// magnified stretch where single pulses show, and the speed along the path over time. Thread-safe: a pure function.
+// The picture of a run: the commanded path with the pulses on it, in one plane or in three views; a magnified stretch
+// that shows single pulses; and the speed along the path over time. Thread-safe: a pure function.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace trammel::run {
 
 struct Plot {
   std::string title;
-  std::string unit = "mm";  // of the points
+  std::string unit = "mm";  // unit of the points
   std::vector<PathPoint> commanded;
   std::vector<PathPoint> executed;
   bool executed_thinned = false;
@@ -21,7 +21,7 @@ struct Plot {
   std::vector<PathSpeed::Sample> speed;
 };
 
-// As SVG, below 5 MB for points of PathPoints with a limit of 20,000.
+// As SVG. The size is below 5 MB for points of PathPoints with a limit of 20,000.
 std::string svg(const Plot& plot);
 
 }  // namespace trammel::run

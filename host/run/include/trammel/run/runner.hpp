@@ -1,5 +1,5 @@
-// Runs a program on a card. It is read twice in memory that does not grow with it: once to check and plan all of it,
-// once to stream it. Opens nothing and prints nothing. Not thread-safe.
+// Runs a program on a card. The program is read twice: once to check and plan all of it, and once to stream it. The
+// memory does not grow with the program. Opens no files and prints nothing. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -22,10 +22,11 @@
 
 namespace trammel::run {
 
-// Gives the program's lines from the first one on: called once for each pass, and may be called again.
+// Returns the program's lines from the first one on. Called once for each pass; a later call starts again at the first
+// line.
 using ProgramLines = std::function<std::unique_ptr<gcode::LineSource>()>;
 
-// What is wrong with the program. what() is "file:line: message".
+// An error in the program. what() is "file:line: message".
 class ProgramError : public std::runtime_error {
  public:
   explicit ProgramError(gcode::Error error);
@@ -35,7 +36,7 @@ class ProgramError : public std::runtime_error {
   gcode::Error error_;
 };
 
-// What went wrong while the card ran, at the program's line that it was at. what() is "file:line: message".
+// An error while the card ran, with the program line in execution. what() is "file:line: message".
 class RunError : public std::runtime_error {
  public:
   RunError(const std::string& file, std::size_t line, const std::string& message);
@@ -46,100 +47,100 @@ class RunError : public std::runtime_error {
   std::size_t line_;
 };
 
-// It was asked to stop on the path (driver::Card::request_stop()): the card is at rest, and a program may begin there.
+// A stop on the path was requested (driver::Card::request_stop()). The card is at rest, and a program may begin there.
 class StoppedOnPath : public RunError {
  public:
   StoppedOnPath(const std::string& file, std::size_t line, const std::string& message, const planner::Pulses& position)
       : RunError(file, line, message), position_(position) {}
-  // Where it stands, machine coordinates.
+  // The position of the stop, machine coordinates.
   const planner::Pulses& position() const { return position_; }
 
  private:
   planner::Pulses position_;
 };
 
-// Where the motion is not smooth.
+// Figures for the motion's smoothness.
 struct PlannedMotion {
   std::uint64_t stops = 0;       // motions that end at rest
-  double velocity_jump = 0;      // mm/s, the largest of an axis at a corner that is passed
-  double acceleration_step = 0;  // mm/s^2, the largest where curvature changes without a corner
+  double velocity_jump = 0;      // mm/s, largest jump of an axis at a corner passed without a stop
+  double acceleration_step = 0;  // mm/s^2, largest step where curvature changes without a corner
 };
 
-// What G64 P has made of corners.
+// The effect of G64 P on corners.
 struct Blends {
   std::array<std::uint64_t, planner::kCorners> corners{};  // by planner::Corner
-  double distance = 0;                                     // mm, the largest between blended and programmed path
+  double distance = 0;                                     // mm, largest, of the blended path from the programmed one
 };
 
-// From the first pass.
+// The result of the first pass.
 struct Plan {
   std::string file;
   double seconds = 0;          // estimate
   std::uint64_t segments = 0;  // paths
-  std::uint64_t rapids = 0;    // of these, the rapids
+  std::uint64_t rapids = 0;    // paths that are rapids
   std::uint64_t commands = 0;  // for the card
   PlannedMotion motion;
   Blends blends;
-  planner::Pulses start{};  // by axis of the card, from machine zero on; where the first line begins
+  planner::Pulses start{};  // position at the first line, by axis of the card, relative to machine zero
   planner::Pulses end{};
-  std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
-  std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
-  std::uint64_t probes = 0;                       // taken to end at their targets
-  std::uint64_t lines_on_probes = 0;              // that depend on where they end: checked again when reached
-  // Of all commands of the program, those before the run's first one too: equal plans have equal ones; 16 digits.
+  std::vector<FeedNotReached> feeds_not_reached;  // one entry per cause, the most frequent first
+  std::map<std::string, std::size_t> accepted;    // words that have no effect yet, with their counts
+  std::uint64_t probes = 0;                       // probes; the plan assumes that they end at their targets
+  std::uint64_t lines_on_probes = 0;              // lines that depend on a probe's result: checked again when reached
+  // Hash of all commands of the program, including those before the run's first one; equal plans have equal hashes. 16
+  // digits.
   std::string identity;
-  // Where the run begins amid the program.
+  // For a run that begins in the middle of the program:
   std::uint64_t skipped = 0;       // commands before its first one that count in GEOMETRY_BEGUN
-  std::uint64_t ticks_done = 0;    // feed ticks of its first path that are done
-  std::size_t begin_line = 1;      // of the program
-  driver::OutputCommand restored;  // set before anything else
+  std::uint64_t ticks_done = 0;    // feed ticks of its first path that are already done
+  std::size_t begin_line = 1;      // program line
+  driver::OutputCommand restored;  // output levels that are set first
 };
 
-// What a probe of the program has met.
+// The result of a probe of the program.
 struct ProbeMade {
   std::size_t line = 0;
   bool tripped = false;
-  gcode::Coordinates edge{};  // machine coordinates; where it ended, if it did not trip
+  gcode::Coordinates edge{};  // machine coordinates; the end of the motion if it did not trip
 };
 
 struct Outcome {
-  std::vector<std::int64_t> counted;         // pulses from the start, by axis of the card, as it counted them
-  std::vector<std::int64_t> final_position;  // pulses, likewise, from machine zero on
-  gcode::Coordinates final_coordinates{};    // the same as the machine's axes: mm (degrees)
-  std::uint64_t commands = 0;                // sent
+  std::vector<std::int64_t> counted;         // pulses from the start, by axis of the card, from its counters
+  std::vector<std::int64_t> final_position;  // pulses relative to machine zero, by axis of the card
+  gcode::Coordinates final_coordinates{};    // the same by axis of the machine: mm (degrees)
+  std::uint64_t commands = 0;                // commands sent
   std::vector<ProbeMade> probes;
-  std::map<int, double> parameters;         // of the program at its end, those that are not 0
-  planner::PathTicks ticks;                 // for a run of what follows
-  std::optional<std::uint32_t> under_runs;  // holds for want of commands; none where the card has no such hold
+  std::map<int, double> parameters;         // program parameters at the end that are not 0
+  planner::PathTicks ticks;                 // for RunSettings::ticks of the next run
+  std::optional<std::uint32_t> under_runs;  // under-run holds; none if the card lacks the under-run hold
 };
 
 class Pipeline;
 
 class Runner {
  public:
-  // `machine` must outlive the runner. `card`: limits_of() the card that will run the program.
+  // `machine` must outlive the runner. `card`: limits_of() of the card that will run the program.
   Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card,
          const RunSettings& settings = {});
 
-  // `observer` must outlive the runner; they are called in the order in which they were added.
+  // `observer` must outlive the runner. Observers are called in the order in which they were added.
   void add(Observer& observer) { observers_.push_back(&observer); }
 
-  // First pass. Throws ProgramError, and driver::ArgumentError for step times that the card cannot keep.
+  // First pass. Throws ProgramError, and driver::ArgumentError for step times that the card does not support.
   const Plan& plan();
-  // Second pass, after the first, to the end of the motion: configures the card and streams. Throws StoppedOnPath when
-  // another thread has asked the card for it, RunError for what
-  // the card or its bus reports, ProgramError when the program is not the one that was planned, and std::runtime_error
-  // when the card does not end where the program does.
+  // Second pass, after the first, to the end of the motion: configures the card and streams. Throws StoppedOnPath if
+  // another thread has requested a stop from the card, RunError for errors of the card or its bus, ProgramError if the
+  // program differs from the planned one, and std::runtime_error if the card's final position is not the program's.
   Outcome run(driver::Card& card);
-  // In place of both: the program is read once, while it runs, and last_plan() tells what was read. What is wrong in it
-  // is a RunError then; the motion before it is made and ends at rest.
+  // Replaces both passes: the program is read once, while it runs, and last_plan() returns the plan of it. An error in
+  // the program is then a RunError; the motion before it is executed and ends at rest.
   Outcome stream(driver::Card& card);
-  // Of the last pass.
+  // The plan of the last pass.
   const Plan& last_plan() const { return plan_; }
-  // The card holds since this run begins amid the program, in its silence: the run ends this hold with its first piece
-  // that moves, and nobody else does. For observers.
+  // For observers: the card is in the hold with which a run begins in the middle of the program. The run itself ends
+  // this hold, with its first piece that moves; nothing else may end it.
   bool begins() const { return begins_; }
-  // As RunSettings::stands_at, for what comes next.
+  // Sets RunSettings::stands_at for the next pass.
   void stands_at(const planner::Pulses& position) { settings_.stands_at = position; }
 
  private:

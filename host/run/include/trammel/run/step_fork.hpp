@@ -1,4 +1,4 @@
-// Steps for several sinks: a simulated card has one. Not thread-safe.
+// Distributes steps to several sinks, because a simulated card supports only one. Not thread-safe.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace trammel::run {
 
 class StepFork final : public driver::StepSink {
  public:
-  // `sink` must outlive the fork; they get each step in the order in which they were added.
+  // `sink` must outlive the fork. The sinks get each step in the order in which they were added.
   void add(driver::StepSink& sink) { sinks_.push_back(&sink); }
 
   void pin_step(const driver::PinStep& step) override {

@@ -1,5 +1,5 @@
-// Takes the steps of a run: writes the step lists, counts, and feeds the deviation meter and the picture.
-// Not thread-safe.
+// Receives the steps of a run: writes the step lists, counts, and feeds the deviation meter and the picture. Not
+// thread-safe.
 #pragma once
 
 #include <array>
@@ -20,16 +20,16 @@ namespace trammel::run {
 
 class CsvWriter;
 
-// Takes the steps as they come; as an observer of the run it learns the commands that they belong to.
+// Receives the steps in order; as an observer of the run it also receives the commands to which they belong.
 class StepRecorder final : public driver::StepSink, public Observer {
  public:
   struct Options {
-    TextSink* steps = nullptr;       // list of the pins' steps: cycle,axis,direction
-    TextSink* path_steps = nullptr;  // list of the path's steps: command,tick,axis,direction
+    TextSink* steps = nullptr;       // list of the steps at the pins: cycle,axis,direction
+    TextSink* path_steps = nullptr;  // list of the steps of the path: command,tick,axis,direction
     bool plot = false;
     double clock_hz = 0;
   };
-  // `kinematics`: whose joints make the steps; the picture has its coordinates.
+  // `kinematics`: relates the steps of the joints to the coordinates of the picture.
   StepRecorder(const Options& options, kinematics::Kinematics kinematics);
   ~StepRecorder() override;
 
@@ -39,9 +39,9 @@ class StepRecorder final : public driver::StepSink, public Observer {
   void command(std::uint64_t number, const driver::Command& command) override { deviation_.command(number, command); }
   void pin_step(const driver::PinStep& step) override;
   void path_step(const driver::PathStep& step) override;
-  // After the last step: writes what is left of the lists.
+  // Call after the last step: writes the rest of the lists.
   void finish();
-  // Throws std::runtime_error unless the pins have made what the card counted, pulses by axis.
+  // Throws std::runtime_error unless the steps at the pins equal `counted`, the card's counters: pulses by axis.
   void check(const std::vector<std::int64_t>& counted) const;
 
   DeviationMeter& deviation() { return deviation_; }
@@ -52,7 +52,7 @@ class StepRecorder final : public driver::StepSink, public Observer {
   const std::vector<Point>& detail() const { return detail_; }
   std::vector<PathSpeed::Sample> speed() const { return speed_.samples(); }
 
-  // From now on up to kDetailPoints positions are kept one by one for the magnified picture, for path `command`.
+  // From path `command` on, up to kDetailPoints positions are kept one by one for the magnified picture.
   void detail_of(std::uint64_t command) { detail_command_ = command; }
   static constexpr std::size_t kDetailPoints = 120;
 
@@ -62,18 +62,18 @@ class StepRecorder final : public driver::StepSink, public Observer {
 
   Options options_;
   kinematics::Kinematics kinematics_;
-  std::array<double, card_map::kMaxAxes> step_length_{};  // mm a pulse, by joint
+  std::array<double, card_map::kMaxAxes> step_length_{};  // mm per pulse, by joint
   std::unique_ptr<CsvWriter> step_list_;
   std::unique_ptr<CsvWriter> path_step_list_;
   DeviationMeter deviation_;
   std::vector<std::uint64_t> steps_;
-  std::vector<std::int64_t> position_;  // at the pins
-  kinematics::Pulses path_position_{};  // before the shapers
+  std::vector<std::int64_t> position_;  // position at the pins
+  kinematics::Pulses path_position_{};  // position before the shapers
   PathPoints executed_{20000};
   PathSpeed speed_;
   std::vector<Point> detail_;
   std::optional<std::uint64_t> detail_command_;
-  std::optional<driver::PathStep> last_;  // the path step before
+  std::optional<driver::PathStep> last_;  // previous path step
 };
 
 }  // namespace trammel::run

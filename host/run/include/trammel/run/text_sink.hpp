@@ -1,4 +1,4 @@
-// Where the text of a run goes: a file, a pipe, a string.
+// Destination of a run's text output: a file, a pipe, a string.
 #pragma once
 
 #include <string_view>
@@ -8,7 +8,7 @@ namespace trammel::run {
 class TextSink {
  public:
   virtual ~TextSink() = default;
-  // Throws when the destination does not take all of it.
+  // Throws if the destination does not accept all of the text.
   virtual void write(std::string_view text) = 0;
 };
 
