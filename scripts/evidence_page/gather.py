@@ -97,6 +97,15 @@ def proofs(records: list[dict]) -> dict:
     return found
 
 
+def clocks(records: list[dict]) -> dict:
+    """The clocks that each lockstep has compared, in all runs together: their seeds differ."""
+    found: dict = {}
+    for record in records:
+        for lockstep, number in record.get("clocks", {}).items():
+            found[lockstep] = found.get(lockstep, 0) + number
+    return found
+
+
 def parts() -> list[str]:
     """The runs that a release candidate should have: all tests, and each part of scripts/test --long or each of its shards."""
     found = re.findall(r'^part (\w+) \d+ ".*"(?: (\d+))?$', (ROOT / "scripts/test").read_text(), re.M)
@@ -117,6 +126,7 @@ def gather(folder: Path = EVIDENCE) -> dict:
         "modules": json.loads((EVIDENCE / "modules.json").read_text()),
         "missing_runs": [part for part in parts() if part not in {record["job"] for record in newest["records"]}],
         "coverage": coverage(newest["records"]),
+        "clocks": clocks(newest["records"]),
         "mutants": mutants(newest["records"]),
         "proofs": proofs(newest["records"]),
         "foreign_judges": foreign_judges(newest["records"]),

@@ -55,11 +55,16 @@ def runs(data: dict) -> str:
 def modules(data: dict) -> str:
     rows = []
     for row in data["modules"]:
-        rows.append([link(f"rtl/{row['file']}", row["module"]), code(row["lockstep"]), number(row["seeded_bugs"]),
+        rows.append([link(f"rtl/{row['file']}", row["module"]), code(row["lockstep"]), compared(data["clocks"], row["lockstep"]),
+                     number(row["seeded_bugs"]),
                      proved(data["proofs"], row["proof"]), killed(data["mutants"], row), number(row["listed"]),
                      *(covered(data["coverage"], row["module"], kind) for kind in KINDS)])
-    return table(["module", "smallest lockstep", "seeded bugs", "proof, and its runs as expected", "mutants killed", "listed as equivalent",
+    return table(["module", "smallest lockstep", "clocks compared in it", "seeded bugs", "proof, and its runs as expected", "mutants killed", "listed as equivalent",
                   *(f"{kind} points covered" for kind in KINDS)], rows, "Modules of the RTL")
+
+
+def compared(clocks: dict, lockstep: str) -> str:
+    return number(clocks[lockstep]) if lockstep in clocks else '<span class="none">not recorded</span>'
 
 
 def proved(proofs: dict, name: str | None) -> str:

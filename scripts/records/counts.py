@@ -10,7 +10,8 @@ from . import figures
 
 # Lines "NUMBER TEXT ...", in scripts/test "compared NUMBER TEXT". Their numbers are added.
 COUNTED = ("clocks of random traffic", "cycles of arcs", "stops judged", "of them with random inputs",
-           "frames through a bad link", "frames of random contents", "frames spoiled", "clocks of soak")
+           "frames through a bad link", "frames of random contents", "frames spoiled", "clocks of soak",
+           "clocks compared in lockstep")
 # As scripts/coverage prints them at its end.
 POINTS = tuple(f"{kind} points{how}" for kind in ("line", "branch", "toggle") for how in ("", " covered", " waived"))
 POINTS += tuple(f"C++ {what}{how}" for what in ("lines", "branches") for how in ("", " covered"))

@@ -5,6 +5,8 @@ import re
 from pathlib import Path
 from typing import Callable, Dict
 
+# Of ctest's whole log: a test of the lockstep NAME begins, and what it prints at its end.
+LOCKSTEP = re.compile(r"^\d+/\d+ Testing: (?:lockstep\.(\w+)\.)?|^(\d+) clocks compared in lockstep$", re.M)
 PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) +(\S+).* s  (ok|FAILED)", re.M)
 MUTANTS = ("tried", "killed")
 PROOFS = ("runs", "as_expected")
@@ -32,6 +34,18 @@ def proofs(log: str) -> dict:
     return found
 
 
+def clocks(log: str) -> dict:
+    """Clocks that each lockstep has compared, from ctest's whole log."""
+    found: dict = {}
+    name = None
+    for lockstep, number in LOCKSTEP.findall(log):
+        if number and name:
+            found[name] = found.get(name, 0) + int(number)
+        elif not number:
+            name = lockstep
+    return found
+
+
 def _has(names) -> Callable[[object], bool]:
     """Whether a record may hold it: integers with these names, by module or proof."""
     return lambda value: isinstance(value, dict) and all(
@@ -39,5 +53,10 @@ def _has(names) -> Callable[[object], bool]:
         for figure in value.values())
 
 
+def _are_counts(value) -> bool:
+    return isinstance(value, dict) and all(type(number) is int for number in value.values())
+
+
 FIELDS: Dict[str, tuple] = {"mutants": (_has(MUTANTS), "tried and killed by module"),
-                            "proofs": (_has(PROOFS), "runs and as_expected by proof")}
+                            "proofs": (_has(PROOFS), "runs and as_expected by proof"),
+                            "clocks": (_are_counts, "integers by lockstep")}

@@ -47,7 +47,8 @@ def read_release(path: Path) -> results.Records:
 def release_text(records: results.Records) -> str:
     """Sorted, a line for each record's identity, run, result, counts and tools, so that differences are readable."""
     lines = (("job", "kind", "command"), ("commit", "clean", "inputs"), ("begun", "seconds", "processor_seconds"),
-             ("result", "exit_status", "log"), ("counts",), ("machine", "tools"), ("tests",), ("coverage",), ("mutants",), ("proofs",))
+             ("result", "exit_status", "log"), ("counts",), ("machine", "tools"), ("tests",), ("coverage",), ("mutants",), ("proofs",),
+             ("clocks",))
     texts = []
     for job in sorted(records):
         entry = records[job]

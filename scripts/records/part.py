@@ -26,6 +26,7 @@ def arguments_of(argv):
     parser.add_argument("--suite", nargs=2, type=Path, metavar=("JUNIT", "LOG"), help="ctest's results and its whole log: for "
                         "what the tests compared, and the verdicts of programs from elsewhere")
     parser.add_argument("--coverage", type=Path, metavar="FILE", help="coverage.json of scripts/coverage: each module's figures")
+    parser.add_argument("--clocks", type=Path, metavar="LOG", help="ctest's whole log: the clocks that each lockstep has compared")
     parser.add_argument("--mutants", type=Path, metavar="FILE", help="results.csv of scripts/mutate: each module's figures")
     return parser.parse_args(argv)
 
@@ -48,6 +49,8 @@ def main(argv) -> int:
         junit, whole = arguments.suite
         counted |= counts.of_text(whole.read_text(errors="replace")) | suite.counts_of(junit)
         verdicts = {"tests": suite.foreign(junit)}
+    if arguments.clocks and (found := figures.clocks(arguments.clocks.read_text(errors="replace"))):
+        verdicts["clocks"] = found
     if arguments.coverage and (found := coverage.of_file(arguments.coverage)):
         verdicts["coverage"] = found
     if arguments.mutants and (found := figures.mutants(arguments.mutants)):

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <climits>
 #include <cmath>
 #include <cstdlib>
@@ -13,8 +14,12 @@ namespace {
 
 bool seeded_bug_expected = false;
 std::string seeded_bug_report;
+std::atomic<std::uint64_t> compared_cycles{0};
 
 }  // namespace
+
+void count_compared(std::uint64_t cycles) { compared_cycles += cycles; }
+std::uint64_t compared() { return compared_cycles; }
 
 std::vector<EventLog::Event>::const_iterator EventLog::end_of(std::uint64_t cycle) const {
   auto end = events_.end();

@@ -103,16 +103,22 @@ class Page(unittest.TestCase):
                                      run("part-mutation-2", mutants={name: {"tried": module["mutants"] - half, "killed": killed}})])
 
         rest = module["mutants"] - half
-        self.assertEqual(self.cell(shards(rest - 1), name, 4), f"{module['mutants'] - 1:,} of {module['mutants']:,}")
-        self.assertIn('class="bad"', self.cell(shards(rest - 2), name, 4))
-        self.assertIn(f"{half} of", self.cell(self.data(v1_0_0=[run("mutation-1-of-60", mutants={name: {"tried": half, "killed": half}})]), name, 4))
+        self.assertEqual(self.cell(shards(rest - 1), name, 5), f"{module['mutants'] - 1:,} of {module['mutants']:,}")
+        self.assertIn('class="bad"', self.cell(shards(rest - 2), name, 5))
+        self.assertIn(f"{half} of", self.cell(self.data(v1_0_0=[run("mutation-1-of-60", mutants={name: {"tried": half, "killed": half}})]), name, 5))
+
+    def test_clocks_of_a_lockstep_are_those_of_all_runs(self):
+        module = gather(self.path)["modules"][0]
+        data = self.data(v1_0_0=[run(job, clocks={module["lockstep"]: 1000, "other": 5}) for job in ("tests", "part-lockstep-1")])
+        self.assertEqual(self.cell(data, module["module"], 2), "2,000")
+        self.assertIn("not recorded", self.cell(self.data(v1_0_0=[run("tests")]), module["module"], 2))
 
     def test_a_proof_shows_its_newest_runs(self):
         module = next(row for row in gather(self.path)["modules"] if row["proof"])
         older = run("proof-x", kind="proof", begun="2025-01-31T23:59:59.999Z", proofs={module["proof"]: {"runs": 9, "as_expected": 9}})
         newer = run("part-proofs", proofs={module["proof"]: {"runs": 8, "as_expected": 7}})
-        self.assertIn('<span class="bad">7 of 8</span>', self.cell(self.data(v1_0_0=[newer, older]), module["module"], 3))
-        self.assertIn("not recorded", self.cell(self.data(v1_0_0=[run("part-unit")]), module["module"], 3))
+        self.assertIn('<span class="bad">7 of 8</span>', self.cell(self.data(v1_0_0=[newer, older]), module["module"], 4))
+        self.assertIn("not recorded", self.cell(self.data(v1_0_0=[run("part-unit")]), module["module"], 4))
 
     def test_runs_that_are_missing_are_named(self):
         data = self.data(v1_0_0=[run("tests"), run("part-mutation-3")])

@@ -52,6 +52,9 @@ class Malformed(InAFolder):
             for wrong in ([], {"axis": 1}, {"axis": {}}, {"axis": dict.fromkeys(right, "1")}, {"axis": {**right, "more": 1}}):
                 self.assertIn(f"field {field}", self.refusal(a_record(**{field: wrong})))
 
+        record.check(a_record(clocks={"axis_0": 3}), "right")
+        self.assertIn("field clocks", self.refusal(a_record(clocks={"axis_0": "3"})))
+
     def test_what_is_no_record_is_refused(self):
         for content in ("", "{", "[1]", "3"):
             self.refusal(content)
@@ -127,6 +130,12 @@ class Figures(InAFolder):
         self.assertEqual(figures.mutants(path), {})
         path.write_text("id,how,module\na-1,mismatch,axis\na-2,lived,axis\na-3,timed out,axis\nb-1,lived,pwm\n")
         self.assertEqual(figures.mutants(path), {"axis": {"tried": 3, "killed": 2}, "pwm": {"tried": 1, "killed": 0}})
+
+    def test_clocks_belong_to_the_lockstep_that_printed_them(self):
+        log = ("1/5 Testing: lockstep.axis_0.Axis/Random.Steps\n1/5 Test: lockstep.axis_0.Axis/Random.Steps\n12 clocks compared in lockstep\n"
+               "2/5 Testing: lockstep.axis_0.Axis.Reset\n30 clocks compared in lockstep\n3/5 Testing: model.Axis\n"
+               "7 clocks compared in lockstep\n4/5 Testing: lockstep.pwm.Pwm.Duty\n1 clocks compared in lockstep, said another\n")
+        self.assertEqual(figures.clocks(log), {"axis_0": 42})
 
     def test_proofs_have_their_covers_and_seeded_bugs(self):
         log = ("== frame_crc: bit by bit\nproof    frame_crc      0.3 s  ok\ncover    frame_crc byte   0.5 s  ok\n"

@@ -30,6 +30,8 @@ BUGS = [
      "records_test.Figures.test_mutants_that_lived_are_not_killed"),
     ("records/figures.py", 'figure["as_expected"] += result == "ok"', 'figure["as_expected"] += 1',
      "records_test.Figures.test_proofs_have_their_covers_and_seeded_bugs"),
+    ("records/figures.py", "        elif not number:\n", "        elif lockstep:\n",
+     "records_test.Figures.test_clocks_belong_to_the_lockstep_that_printed_them"),
     ("records/figures.py", "set(figure) == set(names)", "True",
      "records_test.Malformed.test_figures_of_mutants_and_proofs_are_integers_with_their_names"),
     ("records/suite.py", 'verdict == "passed" and "seeded_bug"', '"seeded_bug"', "records_test.Suite.test_counts_and_seeded_bugs"),

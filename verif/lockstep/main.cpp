@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   }
   if (seeded_bug) trammel::lockstep::expect_seeded_bug();
   const int failed = RUN_ALL_TESTS();
+  if (!seeded_bug) fmt::print("{} clocks compared in lockstep\n", trammel::lockstep::compared());
   if (!seeded_bug || failed != 0) return failed;
   const std::string& report = trammel::lockstep::caught();
   fmt::print("{}", report.empty() ? "the seeded bug was not caught\n" : "caught: " + report);

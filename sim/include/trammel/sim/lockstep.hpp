@@ -58,9 +58,17 @@ class EventLog {
 [[noreturn]] void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed,
                        const std::vector<Difference>& differences, const std::string& events);
 
+// Adds to the sum of the clocks that the process's Checkers have compared; the test executable prints it at its end.
+// From any thread.
+void count_compared(std::uint64_t cycles);
+std::uint64_t compared();
+
 class Checker {
  public:
   Checker(std::string block, std::uint64_t seed) : block_(std::move(block)), seed_(seed) {}
+  ~Checker() { count_compared(cycles_); }
+  Checker(const Checker&) = delete;
+  Checker& operator=(const Checker&) = delete;
 
   // Keeps the event for the report of a later mismatch; `what` must outlive the Checker (a string literal).
   void event(const char* what, std::uint64_t value = 0) {
