@@ -58,6 +58,15 @@ class Environment {
   std::optional<std::string> old_;
 };
 
+TEST(Checker, ClocksOfAllCheckersAreAdded) {
+  const std::uint64_t before = trammel::lockstep::compared();
+  for (const std::uint64_t clocks : {3, 4}) {
+    Checker checker("dut", 1);
+    for (std::uint64_t i = 0; i < clocks; ++i) checker.next_cycle();
+  }
+  EXPECT_EQ(trammel::lockstep::compared() - before, 7);
+}
+
 TEST(Checker, ReportNamesBlockCycleSignalValuesSeedAndEvents) {
   const Environment state("TRAMMEL_STATE_SEED", "5");
   Checker checker("block", 77);
