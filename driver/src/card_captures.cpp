@@ -102,8 +102,8 @@ CaptureQueue Card::read_capture_queue() {
   return {captures_in(word), static_cast<std::uint16_t>(word >> field::kCaptureQueueLostShift)};
 }
 
-// Each capture is read before it is dropped, and dropped by its number. So a link that fails in between loses none and
-// drops none twice.
+// Each capture is read before it is dropped, and dropped by its number. So a link that fails in between loses no
+// capture and drops no capture twice.
 std::vector<QueuedCapture> Card::take_queued_captures() {
   check_capture_queue();
   std::vector<QueuedCapture> result;

@@ -69,7 +69,7 @@ class Stream::Wait {
   // `wake`: as for WaitBudget::pause().
   void pause(const Status& status, std::uint32_t wake) { budget_.pause(status, stream_.poll_clocks_, wake); }
 
-  // Throws StateError when the card has been idle at two looks in a row although it has not begun all.
+  // Throws StateError when the card was idle at two successive polls although it has not begun all commands.
   void idle(bool without_reason) {
     idle_looks_ = without_reason ? idle_looks_ + 1 : 0;
     if (idle_looks_ < 2) return;

@@ -7,7 +7,7 @@
 namespace trammel::driver {
 namespace {
 
-// pi/2 in two parts. The first has 33 bits, so that its product with up to 2^20 quarters is exact.
+// pi/2 in two parts. The first has 33 bits, so that its product with up to 2^20 quarter turns is exact.
 constexpr double kQuarterHigh = 0x1.921fb544p+0;
 constexpr double kQuarterLow = 0x1.0b4611a626331p-34;
 

@@ -174,7 +174,8 @@ void CardServer::drain_leaving() {
   leaving_.erase(std::remove_if(leaving_.begin(), leaving_.end(), gone), leaving_.end());
 }
 
-// Of the client that moves the card; if there is none, of all clients, including those at the machine.
+// Clocks until the next answer of the client that moves the card is due; without such a client, of any client,
+// including those at the machine.
 std::optional<std::uint64_t> CardServer::clocks_to_next() const {
   if (const Client* const client = mover()) return client->clocks_to_next();
   std::optional<std::uint64_t> next = at_world_->clocks_to_next();

@@ -225,8 +225,8 @@ void CardServer::Client::answer(frames::Bytes bytes, std::uint64_t cycle) {
   answers_.push_back({std::move(bytes), cycle, steady_clock::now() + life});
 }
 
-// The client that moves the card alone decides when the card's time advances. While it stands still, a reader's answers
-// are timed by the host's clock.
+// Only the client that moves the card decides when the card's time advances. While that time does not advance, a
+// reader's answers are timed by the host's clock.
 bool CardServer::Client::has_no_say_in_time() const {
   return !settings_.real_time && !may_move_ && server_.mover() != nullptr;
 }

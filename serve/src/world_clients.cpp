@@ -106,8 +106,8 @@ void CardServer::WorldClients::make(Client& client) {
   client.life = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// As for a reader: while a client decides when the card's time advances, answers are timed by the host's clock when it
-// stands still.
+// As for a reader: if a client decides when the card's time advances, answers are timed by the host's clock while that
+// time does not advance.
 bool CardServer::WorldClients::mover_decides() const {
   return !server_.settings_.real_time && server_.mover() != nullptr;
 }

@@ -37,7 +37,7 @@ class CardServer::WorldClients {
     bool may_press = false;
     std::string came;                        // bytes not handled yet
     std::optional<world::Request> request;   // request that waits for its condition
-    std::optional<std::uint64_t> due;        // clock at which its answer leaves
+    std::optional<std::uint64_t> due;        // clock at which its answer is due
     Clock::time_point life = Clock::now();   // the same in real time
     Clock::time_point heard = Clock::now();  // time of the last bytes
   };

@@ -140,10 +140,10 @@ typedef struct trammel_identification {
 // A unit in the card, as its descriptor reports it (docs/reference/registers.md of the project, Units and engines).
 typedef struct trammel_unit {
   uint8_t tag;
-  uint8_t major;  // version
+  uint8_t major;  // major version
   uint8_t minor;
   uint8_t instances;
-  uint8_t features;  // bits
+  uint8_t features;  // bits of its optional features
   uint16_t address;  // byte address of the first instance's first register; 0: no registers
   uint8_t words;     // words used by an instance
   uint8_t stride;    // words from one instance to the next; 0: all share the same registers
@@ -237,7 +237,7 @@ typedef struct trammel_rest {
   uint64_t time;  // clocks since reset; 0: no stop since the reset
   trammel_status status;
   uint32_t faults;
-  uint32_t geometry_begun;  // commands begun from the geometry queue since the cut before
+  uint32_t geometry_begun;  // commands begun from the geometry queue since the previous cut
   uint32_t feed_begun;
   // Ticks of N that the last begun command has not taken yet, 40 bits (one-shot line: enabled clocks of its length). 0
   // if no path was under way, and if `exact` is false.
@@ -273,9 +273,9 @@ typedef enum trammel_fault {
 // FAULT; 0 if there is no fault.
 TRAMMEL_API trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults);
 // Clears all faults; nothing moves. The stream restarts (trammel_restart_stream()). On a fault's ramp it first waits
-// for the end, as trammel_wait_until_stopped() with a second; if that fails, the faults stay. Two faults stay although
-// the result is TRAMMEL_OK: that of a drive that still reports it, and that of an emergency stop whose button is
-// pressed.
+// for the end, as trammel_wait_until_stopped() with a margin of one second; if that fails, the faults stay. Two faults
+// stay although the result is TRAMMEL_OK: that of a drive that still reports it, and that of an emergency stop whose
+// button is pressed.
 TRAMMEL_API trammel_result trammel_clear_faults(trammel_card* card);
 // Sets the watchdog: the card stops, with the cause in FAULT, when this program is silent for `time_ns`; 0: never.
 // Calls that wait, and streams, restart it; set 0 when the motion is over. Choose `time_ns` longer than 4/3 of the time
@@ -387,7 +387,7 @@ TRAMMEL_API trammel_result trammel_override_limits(trammel_card* card, uint8_t m
 typedef struct trammel_capture_select {
   unsigned input;
   bool to_active;    // edges to the active level, after polarity
-  bool to_inactive;  //
+  bool to_inactive;  // edges to the inactive level
   bool continuous;   // the unit continues after each capture; else it takes one only
   bool queue;        // captures go straight into the card's queue; the unit keeps none
 } trammel_capture_select;
@@ -759,14 +759,14 @@ typedef struct trammel_command {
 } trammel_command;
 
 typedef struct trammel_progress {
-  uint64_t commands_sent;  // since the stream was opened or restarted
+  uint64_t commands_sent;  // commands sent since the stream was opened or restarted
   uint32_t geometry_begun;
   uint32_t feed_begun;
   trammel_status status;
 } trammel_progress;
 
 typedef struct trammel_stream_options {
-  int64_t margin_ns;  // card time beyond the planned time, before TRAMMEL_TIMEOUT; 0: a second
+  int64_t margin_ns;  // card time beyond the planned time, before TRAMMEL_TIMEOUT; 0: one second
   // Called while a call of the stream waits; false ends that call with TRAMMEL_CANCELLED. May be null.
   bool (*progress)(void* context, const trammel_progress* progress);
   void* context;
@@ -838,7 +838,7 @@ typedef struct trammel_position_options {
   unsigned ahead;          // periods sent before the card starts the first, at least 1
   // Pulses/s; 0: limited by the card and its step times only.
   double max_speed[TRAMMEL_MAX_AXES];
-  int64_t margin_ns;  // card time beyond the queued periods before TRAMMEL_TIMEOUT; 0: a second
+  int64_t margin_ns;  // card time beyond the queued periods before TRAMMEL_TIMEOUT; 0: one second
 } trammel_position_options;
 
 typedef struct trammel_position_sent {

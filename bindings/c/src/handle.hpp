@@ -73,7 +73,8 @@ namespace trammel::c {
 // Thrown when a progress callback returns false.
 class Cancelled {};
 
-// The exception under way as a result, noted for trammel_last_error(). Only within a catch.
+// Converts the exception being handled to a result, and stores it for trammel_last_error(). Call it only within a
+// catch.
 trammel_result note_exception() noexcept;
 
 // Applies the thread's trammel_set_interrupt() to one call.

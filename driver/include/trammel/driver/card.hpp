@@ -35,7 +35,7 @@ struct CardParts;
 
 class Card {
  public:
-  static constexpr std::uint32_t kFullRatio = driver::kFullRatio;      // 2^-16
+  static constexpr std::uint32_t kFullRatio = driver::kFullRatio;      // in units of 2^-16
   static constexpr std::uint64_t kSlowestSlew = driver::kSlowestSlew;  // clocks
 
   // Reads the card's identification and step times; writes nothing. Throws IdentificationError unless the card is a

@@ -54,7 +54,7 @@ struct Snapshot {
   std::uint32_t rate = 0;                                   // 2^-32 feed ticks per enabled clock
   std::uint32_t ratio = 0;                                  // ratio of the time base, 2^-16
   std::uint32_t geometry_begun = 0;                         // commands begun from the geometry queue since the last cut
-  std::uint32_t feed_begun = 0;                             // and from the feed queue
+  std::uint32_t feed_begun = 0;                             // the same from the feed queue
   std::array<std::int32_t, card_map::kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
 };
 
@@ -64,8 +64,8 @@ struct Rest {
   std::uint64_t time = 0;            // clocks since reset; 0: no stop since the reset
   Status status;                     //
   std::uint32_t faults = 0;          // FAULT
-  std::uint32_t geometry_begun = 0;  // commands begun from the geometry queue since the cut before
-  std::uint32_t feed_begun = 0;      // and from the feed queue
+  std::uint32_t geometry_begun = 0;  // commands begun from the geometry queue since the previous cut
+  std::uint32_t feed_begun = 0;      // the same from the feed queue
   // Ticks of N that the last begun command has not taken yet, 40 bits (direct move: enabled clocks of its length). 0 if
   // no path is under way, also at a barrier, and if exact() is false.
   std::uint64_t ticks_left = 0;

@@ -173,7 +173,7 @@ const card_map::Command& layout_of(const Command& command);
 
 struct DecodedCommand {
   Command command;
-  std::uint8_t number = 0;  // mod 256
+  std::uint8_t number = 0;  // of the command, mod 256
 };
 
 // Inverse of encode(): decodes exactly one command of `count` words. Throws ArgumentError, which names the problem, for

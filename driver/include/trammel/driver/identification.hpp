@@ -16,8 +16,8 @@ struct Identification {
   std::uint32_t clock_hz = 0;        // Hz
   UnitTable units;                   // the units in the card
   std::uint32_t engines = 0;         // the engines of the units, as bits of card_map::engine
-  std::uint32_t geometry_depth = 0;  // halfwords
-  std::uint32_t feed_depth = 0;      // halfwords
+  std::uint32_t geometry_depth = 0;  // geometry queue, halfwords
+  std::uint32_t feed_depth = 0;      // feed queue, halfwords
 };
 
 // Whether a piece's slew shift (FeedCommand::slew_shift) has an effect: this needs classes and time_base 1.1 (map 3.4).

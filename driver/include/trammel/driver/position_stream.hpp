@@ -67,7 +67,7 @@ class PositionStream {
   struct Stopped {
     std::uint32_t faults = 0;       // FAULT
     std::uint64_t stale_ticks = 0;  // excess ticks after a missing period, else 0
-    Positions positions{};          // whole pulses
+    Positions positions{};          // positions of the axes, whole pulses
   };
 
   // Opens the stream at the present position of the axes. Drops queued commands and resets their numbers; makes a
@@ -153,7 +153,7 @@ class PositionStream {
   PositionStreamOptions options_;
   unsigned axes_;
   std::uint64_t margin_clocks_;
-  std::array<std::uint64_t, card_map::kMaxAxes> least_clocks_{};  // of a pulse
+  std::array<std::uint64_t, card_map::kMaxAxes> least_clocks_{};  // least clocks per pulse
   std::array<std::int32_t, card_map::kMaxAxes> origin_{};         // POSITION at the opening
   std::shared_ptr<const StreamLimits> limits_;                    // never null in an open stream
 

@@ -27,7 +27,7 @@
 namespace trammel::driver {
 
 struct StreamProgress {
-  std::uint64_t commands_sent = 0;   // since the stream was opened or restarted
+  std::uint64_t commands_sent = 0;   // commands sent since the stream was opened or restarted
   Status status;                     // of the card
   std::uint32_t geometry_begun = 0;  // of these, begun from the geometry queue: paths and barriers
   std::uint32_t feed_begun = 0;      // of these, begun from the feed queue: pieces and barriers

@@ -40,7 +40,7 @@ class SerialLink final : public HostTimeLink {
 
  private:
   Open open_;
-  std::unique_ptr<SerialStream> stream_;  // nullptr: lost
+  std::unique_ptr<SerialStream> stream_;  // null: lost
   std::uint32_t baud_;
 };
 
@@ -98,7 +98,7 @@ class StreamLink final : public driver::ByteLink {
   std::chrono::nanoseconds patience_{0};  // 0: as Options say
   std::uint32_t waits_ = 0;               // number of the last wait; distinguishes a late answer from the next one's
   bool given_up_ = false;
-  std::unique_ptr<ByteStream> stream_;  // nullptr: lost
+  std::unique_ptr<ByteStream> stream_;  // null: lost
   bool may_move_ = true;
   std::string hold_origin_;
   std::uint64_t reconnections_ = 0;

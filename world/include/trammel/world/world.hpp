@@ -2,8 +2,8 @@
 // its inputs. Its time is the card's, in clocks; only pulse() and run_to() advance it. EngineInWorld connects it to a
 // simulated card. One thread per object; allocates nothing after construction.
 //
-// Motion is integrated in steps of slightly less than or equal to 20 microseconds that start at whole clocks. A switch
-// is pressed or released at the end of such a step. Bounces and events may occur at any clock.
+// Motion is integrated in steps of 20 microseconds or slightly less, which start at whole clocks. A switch is pressed
+// or released at the end of such a step. Bounces and events may occur at any clock.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ class World {
   void set_watcher(Watcher* watcher) { watcher_ = watcher; }
 
   // The present levels of the card's pins; bit n: input n.
-  std::uint32_t wired() const { return wired_; }    // inputs that something is wired to
+  std::uint32_t wired() const { return wired_; }    // inputs that are wired
   std::uint32_t levels() const { return levels_; }  // 0 for unwired inputs
   bool emergency_stop() const { return emergency_stop_; }
   bool has_emergency_stop() const { return has_emergency_stop_; }
