@@ -16,8 +16,7 @@ namespace trammel::driver {
 namespace {
 
 constexpr std::uint64_t kCountLimit =
-    card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Arc))->count_maximum +
-    1;  // also the limit of path ticks
+    card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Arc))->count_maximum + 1;  // also of path ticks
 constexpr std::int64_t kMaxQuadrants = std::numeric_limits<decltype(ArcCommand::quadrants)>::max();
 
 // A lattice point relative to the centre, in the units of its conic.

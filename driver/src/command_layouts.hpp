@@ -16,8 +16,7 @@ namespace trammel::driver {
 namespace map = card_map;
 
 inline constexpr unsigned kHalfwordBits = 16;
-inline constexpr std::size_t kCountBegin =
-    2;  // index of the halfword, after axis mask and opcode, number and length in words
+inline constexpr std::size_t kCountBegin = 2;  // halfword; after mask, opcode, number and length in words
 inline constexpr std::size_t kCountHalfwords = 3;
 inline constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;
 // Bits of the field `plane`.

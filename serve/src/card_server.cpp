@@ -21,9 +21,8 @@ namespace field = card_map::field;
 
 // A refused client's stream is read for this long, so that the reason reaches it.
 constexpr auto kFarewell = 1s;
-constexpr auto kLook = 2ms;  // interval of polls when nothing is due
-constexpr std::size_t kMaxClients =
-    kMaxReaders + 2;  // plus the client that moves the card, and one that has not started
+constexpr auto kLook = 2ms;                           // interval of polls when nothing is due
+constexpr std::size_t kMaxClients = kMaxReaders + 2;  // plus the mover, and one that has not started
 
 // Whether a reader may make this write: it affects no motion (request for a snapshot, clearing of REFUSAL).
 bool serves_reading(std::uint32_t address, std::uint32_t data) {

@@ -54,9 +54,7 @@ class CardServer::Client {
   bool waits_by_itself() const { return hello_; }
   std::string peer() const { return stream_->peer(); }
   std::uint64_t requests() const { return requests_; }
-  std::uint64_t dropped() const {
-    return server_.motion_.dropped() + reading_.dropped();
-  }  // dropped frames, of both endpoints
+  std::uint64_t dropped() const { return server_.motion_.dropped() + reading_.dropped(); }  // frames, both endpoints
   const frames::Session& reading_session() const { return reading_.session(); }
   std::unique_ptr<transport::ByteStream> take_stream() { return std::move(stream_); }
 

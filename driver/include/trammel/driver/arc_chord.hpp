@@ -32,8 +32,7 @@ inline constexpr std::uint32_t kMaxChordTurns = 100'000;
 // An arc in the plane, with straight motion of further axes over the same time.
 struct HelixGeometry {
   ArcGeometry arc;
-  std::array<std::int64_t, card_map::kMaxAxes>
-      further{};  // by axis index, from start to end, pulses; 0 for the axes of the plane
+  std::array<std::int64_t, card_map::kMaxAxes> further{};  // by axis, from start to end, pulses; 0 in the plane
 };
 
 // The smallest `ticks` that make_helix() accepts.

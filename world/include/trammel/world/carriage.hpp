@@ -28,9 +28,7 @@ class Carriage {
   double position() const { return motor_.position(); }          // pulses, exact
   std::int64_t place() const;                                    // pulses, rounded
   std::int64_t commanded() const { return motor_.commanded(); }  // pulses, as the card counts them
-  std::int64_t lost() const {
-    return motor_.lost();
-  }  // pulses: commanded position minus the position where the rotor is held
+  std::int64_t lost() const { return motor_.lost(); }            // pulses; see Motor::lost()
   bool still() const { return motor_.still(); }
   const Motor& motor() const { return motor_; }
 
