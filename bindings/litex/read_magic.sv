@@ -1,7 +1,8 @@
-// Reads MAGIC and CLOCK_HZ through the SoC's UART bridge, writes a setting and reads it back. A request is a command (1 write, 2 read), the
-// number of words, and the address in words, highest byte first; so is the reply.
+// Test bench: reads MAGIC and CLOCK_HZ through the SoC's UART bridge, writes a setting and reads it back. A request is
+// a command (1 write, 2 read), the number of words, and the word address, most significant byte first. Data words also
+// have their most significant byte first.
 module read_magic;
-  localparam int BIT = 16;  // clocks
+  localparam int BIT = 16;  // clocks per bit
   logic clk = 0;
   logic rst = 1;
   logic rx = 1;
@@ -34,7 +35,7 @@ module read_magic;
     for (int i = 3; i >= 0; i--) send(value[8*i+:8]);
   endtask
 
-  // The line from the SoC, all the time.
+  // Receives bytes from the SoC continuously.
   logic [7:0] got[0:15];
   int count = 0;
   logic good = 1;

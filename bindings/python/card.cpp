@@ -1,4 +1,4 @@
-// Cards: opening and closing, settings and state, what only simulated ones have.
+// Cards: opening and closing, settings and state, functions of simulated cards.
 #include "card.hpp"
 
 #include <nanobind/stl/optional.h>

@@ -1,4 +1,4 @@
-// A card as Python holds it.
+// The card object of the Python module.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,8 @@ namespace trammel::python {
 
 using std::chrono::nanoseconds;
 
-// (cycle, axis, direction) of a leading edge at a pin; (command, tick, axis, direction) of a step of the path.
+// PinStep: (cycle, axis, direction) of a leading edge at a pin. PathStep: (command, tick, axis, direction) of a step of
+// the path.
 using PinStep = std::tuple<std::uint64_t, unsigned, int>;
 using PathStep = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
 
@@ -33,7 +34,7 @@ class StepRecord final : public driver::StepSink {
   std::vector<PathStep> path;
 };
 
-// A bus that can be let go of while card and streams are still there: every access then says so.
+// A bus that can be closed while the card and its streams still exist: every later access then throws.
 class ClosableBus final : public driver::Bus {
  public:
   explicit ClosableBus(std::shared_ptr<driver::Bus> way) : way_(std::move(way)) {}
@@ -55,7 +56,7 @@ class ClosableBus final : public driver::Bus {
   std::shared_ptr<driver::Bus> way_;
 };
 
-// Card, bus and, for simulated ones, the record of steps, which outlives the bus.
+// Card, bus and, for simulated cards, the record of steps, which outlives the bus.
 class PythonCard {
  public:
   PythonCard(std::shared_ptr<driver::Bus> way, sim::Engine* simulated)
@@ -73,18 +74,18 @@ class PythonCard {
   }
 
   StepRecord steps;
-  std::shared_ptr<bindings::CardInWorld> world;  // where it has a machine behind its pins
+  std::shared_ptr<bindings::CardInWorld> world;  // set if the card has a machine behind its pins
 
  private:
   ClosableBus bus_;
-  sim::Engine* engine_;  // nullptr for others, and once closed
+  sim::Engine* engine_;  // the simulated card; nullptr for other cards, and after closing
   bool simulated_;
 
  public:
   driver::Card card;
 };
 
-// By axis; what is missing at the end is 0.
+// Values by axis; missing values at the end are 0.
 template <class T>
 std::array<T, card_map::kMaxAxes> by_axis(const std::vector<T>& values, const char* what) {
   if (values.size() > card_map::kMaxAxes) {
@@ -95,9 +96,9 @@ std::array<T, card_map::kMaxAxes> by_axis(const std::vector<T>& values, const ch
   return out;
 }
 
-using Axes = std::vector<unsigned>;  // their numbers
+using Axes = std::vector<unsigned>;  // numbers of axes
 
-// Bit n: axis n. Throws ArgumentError for one that the card lacks.
+// A mask of the axes; bit n: axis n. Throws ArgumentError for an axis that the card lacks.
 inline std::uint8_t mask_of(const PythonCard& of, const Axes& axes) {
   const unsigned present = of.card.identification().axes;
   unsigned mask = 0;

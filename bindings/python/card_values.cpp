@@ -1,4 +1,4 @@
-// What a card says of itself and of its state.
+// The values that a card reports: identification and state.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>

@@ -1,11 +1,11 @@
-// A command of the stream as Python holds it.
+// The command object of the Python module.
 #pragma once
 
 #include "trammel/driver/commands.hpp"
 
 namespace trammel::python {
 
-// nanobind would take a variant apart into its alternatives.
+// Wraps the variant, because nanobind would convert a bare variant to one of its alternatives.
 struct PythonCommand {
   driver::Command command;
 };

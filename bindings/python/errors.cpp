@@ -14,7 +14,7 @@
 namespace trammel::python {
 namespace {
 
-// A class of exceptions of the module, with one or two bases.
+// Creates an exception class of the module, with one or two bases.
 nb::handle make_error(nb::module_& m, const char* name, const char* doc, nb::handle base, nb::handle second = {}) {
   const std::string full = std::string("trammel.") + name;
   const nb::tuple bases = second ? nb::make_tuple(base, second) : nb::make_tuple(base);
@@ -32,13 +32,13 @@ void raise(nb::handle type, const std::exception& error, std::pair<const char*, 
   PyErr_SetObject(type.ptr(), exception.ptr());
 }
 
-// The driver's classes, the derived before their bases.
+// Catches the driver's classes; derived classes come before their bases.
 void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);
   } catch (const driver::ArgumentError& e) {
     raise(error_types.argument, e);
-  } catch (const std::invalid_argument& e) {  // arcs, interpolators, simulated cards
+  } catch (const std::invalid_argument& e) {  // thrown by arcs, interpolators and simulated cards
     raise(error_types.argument, e);
   } catch (const driver::StoppedError& e) {
     raise(error_types.stopped, e, std::pair{"geometry_begun", e.geometry_begun()});

@@ -16,13 +16,13 @@ namespace {
 
 using SoftRanges = std::vector<std::optional<driver::SoftRange>>;
 
-// With the number of the card's units, for the list of them.
+// CaptureStates plus the number of the card's units, which is the length of the Python list.
 struct PythonCaptures {
   driver::CaptureStates states;
   unsigned present;
 };
 
-// Masks of faults are ints in Python; these are their bits.
+// Masks of faults are ints in Python; this enumeration holds their bits.
 enum class Fault : std::uint32_t {};
 constexpr Fault fault(std::uint32_t bits) { return static_cast<Fault>(bits); }
 

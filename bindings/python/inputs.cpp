@@ -12,7 +12,7 @@
 namespace trammel::python {
 namespace {
 
-// With the number of the card's axes, for lists by axis.
+// The roles plus the number of the card's axes, which is the length of lists by axis.
 struct PythonRoles {
   driver::ActiveRoles roles;
   std::size_t axes;

@@ -19,7 +19,7 @@ namespace {
 
 namespace ip = interpolation;
 
-// A walk that knows how many axes its curve has.
+// A walk with the number of axes of its curve.
 struct PythonWalk {
   ip::AnyInterpolator walk;
   unsigned axes;
@@ -32,7 +32,7 @@ struct PythonWalk {
   }
 };
 
-// 128 bits, by way of two halves.
+// Converts 128 bits to a Python int, from two halves.
 nb::object python_int(ip::Deviation value) {
   const auto high = static_cast<std::int64_t>(value >> 64);
   const auto low = static_cast<std::uint64_t>(value);
@@ -63,7 +63,7 @@ std::unique_ptr<PythonWalk> walk(const std::string& method, const ip::Curve& cur
       PythonWalk{ip::make_interpolator(*named, curve, options), line != nullptr ? line->axes : 2, method});
 }
 
-// All of a walk: a list of (time, position) after each step.
+// Runs a whole walk: a list of (time, position) after each step.
 nb::list path_of(const PythonWalk& of) {
   nb::list out;
   ip::AnyInterpolator copy = of.walk;

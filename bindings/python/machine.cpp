@@ -1,4 +1,4 @@
-// Machine files, homing, places in mm.
+// Machine files, homing, positions in mm.
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>

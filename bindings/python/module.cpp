@@ -1,7 +1,7 @@
-// Python's module: driver, simulated card and interpolators.
+// The Python module: driver, simulated card and interpolators.
 //
-// Times come as whole nanoseconds, since Python's timedelta ends at microseconds. Calls that use a card let other
-// threads of Python go on, and those that wait end at Ctrl-C: waiting().
+// Times are whole nanoseconds, because Python's timedelta has a resolution of microseconds only. Calls that use a card
+// release Python's lock, so that other threads run; Ctrl-C ends waiting calls (see waiting()).
 #include "module.hpp"
 
 NB_MODULE(_trammel, m) {

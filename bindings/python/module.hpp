@@ -1,4 +1,4 @@
-// The parts of the module, each in a file of its own. Only the files of this folder know of nanobind.
+// The parts of the module, one per file. Only the files of this folder depend on nanobind.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -1,4 +1,4 @@
-// How a card moves without a stream: one-shot lines, hold, override, stop.
+// Motion without a stream: one-shot lines, hold, override, stop.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 

@@ -17,7 +17,7 @@ namespace {
 struct PythonPlace {
   driver::CardPlace place;
   bool first;
-  std::size_t axes;  // of the card
+  std::size_t axes;  // number of the card's axes
 
   template <class Values>
   auto of_axes(const Values& values) const {

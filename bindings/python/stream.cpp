@@ -20,7 +20,7 @@ std::vector<driver::Command> commands_of(const std::vector<PythonCommand>& comma
   return out;
 }
 
-// Ctrl-C may come while Python's function runs: it ends the call as everywhere, by a stop.
+// Ctrl-C may come while the Python function runs. It then ends the call as everywhere, by a stop.
 void tell(const std::function<void(const driver::StreamProgress&)>& progress, const driver::StreamProgress& is) {
   const nb::gil_scoped_acquire locked;
   try {

@@ -1,4 +1,4 @@
-// Calls that wait: without Python's lock, and ended by what a signal's handler raises.
+// Waiting calls: they run without Python's lock, and an exception that a signal handler raises ends them.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace trammel::python {
 
-// What a signal's handler has raised while the thread's innermost call waited, if anything.
+// The exception that a signal handler raised during the wait of the thread's innermost call, if any.
 class RaisedWhileWaiting : public std::optional<nb::python_error> {
  public:
   RaisedWhileWaiting() : outer_(innermost()) { innermost() = this; }
@@ -28,9 +28,9 @@ class RaisedWhileWaiting : public std::optional<nb::python_error> {
   RaisedWhileWaiting* outer_;
 };
 
-// Makes the call without Python's lock. While it waits, signals are looked for: what a handler raises (Ctrl-C:
-// KeyboardInterrupt) ends the call, which stops the card on the path before, and is raised with what the driver said of
-// that as its cause.
+// Makes the call without Python's lock. Signals are checked while it waits. An exception that a handler raises (Ctrl-C:
+// KeyboardInterrupt) ends the call, which first stops the card on the path. That exception is then raised, with the
+// driver's error as its cause.
 template <class Call>
 auto without_lock(Call call) {
   RaisedWhileWaiting raised;
@@ -56,13 +56,13 @@ auto without_lock(Call call) {
   } catch (const driver::Error& error) {
     if (!raised) throw;
     PyException_SetCause(raised->value().ptr(), error_types.error(error.what()).release().ptr());
-  } catch (const nb::python_error&) {  // of a callback, in which a call of its own was ended
+  } catch (const nb::python_error&) {  // thrown by a callback in which a nested call was ended
     if (!raised) throw;
   }
   throw std::move(*raised);
 }
 
-// The function, as Python calls it.
+// The function in the form that Python calls.
 template <class Result, class... Values>
 auto waiting(Result (*function)(Values...)) {
   return [function](Values... values) -> Result {

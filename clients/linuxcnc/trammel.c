@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only
  *
- * HAL component `trammel`: in each servo period one target per joint to the process that owns the card
- * (`trammel linuxcnc`), and the card's state from it. docs/user/linuxcnc.md has the pins.
+ * HAL component `trammel`. In each servo period it sends one target per joint to the process that owns the card
+ * (`trammel linuxcnc`), and reads the card's state from it. docs/user/linuxcnc.md describes the pins.
  *
  *     loadrt trammel name=NAME joints=3
  *     addf trammel.read servo-thread      (first)
@@ -36,8 +36,8 @@ static void read_joint(int n, int echo) {
   *pins->stop_position = (double)(status->stop_position[n] - joint->offset) / joint->scale;
 }
 
-/* The index edge becomes HAL's zero. In this one period the feedback is where the command is from there: LinuxCNC sets
-   its command to the feedback then, and a feedback that lags would command a jump. */
+/* The index edge becomes HAL's zero. In this one period the feedback is the position of the command, counted from
+   there: LinuxCNC then sets its command to the feedback, and a feedback that lags would command a jump. */
 static void read_index(int n) {
   const struct trammel_status* status = status_of(&card);
   struct joint_pins* pins = &card.pins->joint[n];
@@ -52,7 +52,7 @@ static void read_index(int n) {
   if (joint->scale != 0) *pins->position_fb = (place - (double)joint->offset) / joint->scale;
 }
 
-/* The scale in force; where the parameter is 0, or still shows what the machine file has, it shows that. */
+/* Takes over the scale in force. The parameter shows it if it is 0, or still shows the machine file's value. */
 static void read_scale(int n) {
   struct joint_pins* pins = &card.pins->joint[n];
   struct joint* joint = &card.joints[n];
@@ -64,7 +64,7 @@ static void read_scale(int n) {
   joint->scale = in_force;
 }
 
-/* The watchdog's bit is set by the card; a bit that was set and is not any more asks to clear it. */
+/* The card sets the watchdog's bit. If the user has cleared a bit that was set, the fault is to be cleared. */
 static void read_watchdog(void) {
   static int was_set;
   const int bitten = (status_of(&card)->fault & FAULT_WATCHDOG) != 0;
@@ -102,8 +102,8 @@ static void count_errors(int fresh) {
   if (error && *pins->link_ok) ++*pins->packet_error_total;
 }
 
-/* Whether a status came that was not there in the last period. A thread that was late runs many periods at once: the
-   link is lost after so many periods and their time. */
+/* Whether a new status came since the last period. A late thread runs many periods at once, so the link is lost only
+   after both the number of periods and their time. */
 static int read_status(long period) {
   const struct trammel_status* status = status_of(&card);
   const uint32_t most = card.pins->link_periods;
@@ -125,7 +125,8 @@ static void keep_most(hal_u32_t* most, long long value) {
   if (value > *most) *most = value > UINT32_MAX ? UINT32_MAX : (hal_u32_t)value;
 }
 
-/* While the machine is on: what stalls the motion, if anything does, LinuxCNC's thread or the owner. */
+/* Measures, while the machine is on, the longest delays of LinuxCNC's thread and of the owner, to find which one stalls
+   the motion. */
 static void measure(long long now, int fresh) {
   if (card.mode == FOLLOWING) {
     keep_most(card.pins->longest_period, now - card.read_before);
@@ -190,7 +191,7 @@ static void move_joint(int n, double time, int path) {
   joint->follows = enabled;
 }
 
-/* What the card follows while the machine is off is where it stands. */
+/* While the machine is off, the target is the card's own position. */
 static void move_joints(long period) {
   const int path = on_path(&card);
   int n;
@@ -284,7 +285,7 @@ int rtapi_app_main(void) {
   return error;
 }
 
-/* LinuxCNC has stopped its threads before. The last period switches the machine off. */
+/* LinuxCNC has already stopped its threads. The last period switches the machine off. */
 void rtapi_app_exit(void) {
   struct trammel_period* last = link_period(&card.link, rtapi_get_time());
   hal_exit(component);

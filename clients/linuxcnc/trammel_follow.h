@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only
  *
- * The place of one joint that the card is sent to in each period: LinuxCNC's command, clipped by speed and
- * acceleration. Pulses and seconds. Nothing but arithmetic: no type of HAL.
+ * The target position of one joint in each period: LinuxCNC's command, limited in speed and acceleration. Pulses and
+ * seconds. Arithmetic only, no types of HAL.
  */
 #ifndef TRAMMEL_FOLLOW_H
 #define TRAMMEL_FOLLOW_H
@@ -10,9 +10,9 @@
 #include <stdint.h>
 
 struct follower {
-  double place;   /* sent last, pulses from machine zero */
-  double speed;   /* towards it */
-  double command; /* of the period before */
+  double place;   /* target sent last, pulses from machine zero */
+  double speed;   /* speed of the target, pulses/s */
+  double command; /* command of the previous period */
 };
 
 static double clip(double value, double low, double high) { return value < low ? low : value > high ? high : value; }
@@ -23,9 +23,9 @@ static void follow_begin(struct follower* f, double place, double command) {
   f->command = command;
 }
 
-/* One period of `time` seconds. Without limits (0), or within them, the place is the command exactly. After a clip the
-   distance left closes at the limits, relative to the command's own speed; `most` is the difference of speeds from
-   which whole periods of that deceleration still close it. */
+/* One period of `time` seconds. Without limits (0), or within them, the target equals the command. After the target was
+   limited, the remaining distance closes at the limits, relative to the command's own speed. `most` is the largest
+   difference of speeds that still closes it with whole periods of that deceleration. */
 static void follow(struct follower* f, double command, double time, double max_speed, double max_acceleration) {
   const double commanded = (command - f->command) / time;
   const double left = f->command - f->place;
@@ -43,7 +43,7 @@ static void follow(struct follower* f, double command, double time, double max_s
   f->command = command;
 }
 
-/* One period of a joint that is not to move any more: at the limit of acceleration, or at once where there is none. */
+/* One period of a joint that must stop: at the limit of acceleration, or at once without a limit. */
 static void follow_brake(struct follower* f, double time, double max_acceleration) {
   const double change = max_acceleration * time;
   f->speed = max_acceleration > 0 ? f->speed - clip(f->speed, -change, change) : 0;
@@ -51,7 +51,7 @@ static void follow_brake(struct follower* f, double time, double max_acceleratio
   f->command = f->place;
 }
 
-/* In the unit of the shared memory, within its bound. */
+/* The target in the unit of the shared memory, within its range. */
 static int64_t follow_target(const struct follower* f) {
   const double most = 36028797018963968.0; /* 2^55 */
   return (int64_t)llrint(clip(f->place * 16777216.0, -most, most));

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-2.0-only
  *
  * The component's end of the shared memory (trammel/linuxcnc/shared_region.h): attaches it, fills the ring of periods,
- * writes the settings. The planner module's file has what both of them need: reading the status, waking the owner.
- * Functions but link_attach() neither wait nor allocate, and call nothing of the kernel but FUTEX_WAKE. One thread.
+ * writes the settings. The planner module's header has the functions that both need: reading the status, waking the
+ * owner. All functions except link_attach() neither wait nor allocate, and make no system call except FUTEX_WAKE. One
+ * thread.
  */
 #ifndef TRAMMEL_LINK_H
 #define TRAMMEL_LINK_H
@@ -10,11 +11,11 @@
 #include "trammel_planner_ring.h"
 
 struct link {
-  struct ring ring; /* the region and the status; operations are the planner module's */
-  int file;         /* holds the lock */
-  uint64_t number;  /* of the last period, dropped ones included */
+  struct ring ring; /* the region and the status; its operations belong to the planner module */
+  int file;         /* open descriptor: holds the lock */
+  uint64_t number;  /* number of the last period; dropped periods count */
   uint64_t head;
-  int64_t times[TRAMMEL_PERIODS]; /* when the last ones began, by their numbers */
+  int64_t times[TRAMMEL_PERIODS]; /* start times of the last periods, by number */
   struct trammel_settings settings;
 };
 
@@ -24,8 +25,8 @@ static int link_path(char* path, size_t size, const char* name) {
   return length < (int)size ? 0 : -ENAMETOOLONG;
 }
 
-/* Makes the region where it does not exist. 0, or -errno; -EBUSY: another component has it; -EPROTO: its owner knows
-   another layout. */
+/* Creates the region if it does not exist. Returns 0 or -errno; -EBUSY: another component uses it; -EPROTO: its owner
+   uses another layout. */
 static int link_attach(struct link* link, const char* name) {
   char path[128];
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = TRAMMEL_LOCK_HAL, .l_len = 1};
@@ -69,12 +70,12 @@ static void link_detach(struct link* link) {
   link->ring.region = NULL;
 }
 
-/* The owner has attached, and knows this layout. */
+/* Whether the owner has attached with this layout. */
 static int link_has_owner(const struct link* link) {
   return __atomic_load_n(&link->ring.region->version_owner, __ATOMIC_RELAXED) == TRAMMEL_REGION_VERSION;
 }
 
-/* The slot of the next period; NULL: the owner has not read what is there. The number counts on in either case. */
+/* The slot of the next period; NULL if the owner has not read the old periods. The number increases in both cases. */
 static struct trammel_period* link_period(struct link* link, int64_t time) {
   struct trammel_region* const region = link->ring.region;
   struct trammel_period* period = &region->periods[link->head % TRAMMEL_PERIODS];
@@ -91,8 +92,8 @@ static void link_publish(struct link* link) {
   __atomic_store_n(&link->ring.region->period_head, ++link->head, __ATOMIC_RELEASE);
 }
 
-/* Seconds from a period's beginning until the card reaches its targets, at most: the age of the newest period that the
-   card had when it was read, that period itself, and those queued before it. 0: unknown. */
+/* Longest time in seconds from a period's start until the card reaches its targets: the age of the newest period that
+   the card had when the status was read, plus that period, plus the periods queued before it. 0: unknown. */
 static double link_latency(const struct link* link, double period) {
   const struct trammel_status* status = &link->ring.status;
   int64_t age;

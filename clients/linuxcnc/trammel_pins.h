@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-only
  *
- * Pins and parameters of the component `trammel`. Names are hostmot2's where the meaning is the same.
+ * Pins and parameters of the component `trammel`. Names are those of hostmot2 if the meaning is the same.
  */
 #ifndef TRAMMEL_PINS_H
 #define TRAMMEL_PINS_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only
  *
- * What the planner module keeps of the path, and what it does in each servo period. LinuxCNC's TP_STRUCT has the public
- * state; everything of a segment that the owner does not need stays here until the segment begins.
+ * The planner module's state of the path, and its work in each servo period. The public state is in LinuxCNC's
+ * TP_STRUCT. The data of a segment that the owner does not need stays here until the segment starts.
  */
 #ifndef TRAMMEL_PLANNER_PATH_H
 #define TRAMMEL_PLANNER_PATH_H
@@ -9,10 +9,10 @@
 #include "trammel_planner_ring.h"
 
 enum {
-  KEPT = 4096,          /* segments; more than the ring and the owner's queue hold */
-  MOST_QUEUED = 1500,   /* segments that have not begun, before LinuxCNC is told to wait */
-  RING_RESERVE = 64,    /* slots for operations that are no segments */
-  SILENT_PERIODS = 2000 /* of the owner: it is gone or stopped */
+  KEPT = 4096,          /* segments; more than fit in the ring and the owner's queue */
+  MOST_QUEUED = 1500,   /* limit of segments not begun; above it LinuxCNC has to wait */
+  RING_RESERVE = 64,    /* slots for operations other than segments */
+  SILENT_PERIODS = 2000 /* silent periods after which the owner counts as gone or stopped */
 };
 enum { WAIT_NOT = 0, WAIT_AT_SPEED = 1, WAIT_PROBE = 2 };
 
@@ -26,15 +26,15 @@ struct segment {
 };
 
 static struct ring ring;
-static struct segment segments[KEPT];            /* by number */
-static unsigned char waits[TRAMMEL_OPERATIONS];  /* by slot: before it is published */
+static struct segment segments[KEPT];            /* by segment number */
+static unsigned char waits[TRAMMEL_OPERATIONS];  /* by slot: condition for its publication */
 static uint64_t posted, begun;                   /* segments */
-static uint64_t in_force_at, pose_in_force_at;   /* operations_done from which abort, clear, pose are in force */
-static uint64_t probes, refusals, session, beat; /* as seen last */
+static uint64_t in_force_at, pose_in_force_at;   /* operations_done from which abort, clear or pose is in force */
+static uint64_t probes, refusals, session, beat; /* values seen last */
 static unsigned silent = SILENT_PERIODS + 1;     /* periods without a new beat */
 static int clear_pending, pose_pending, reverse_told;
-static uint32_t outputs_pending, levels_pending; /* of M64 and M65 */
-static uint32_t switched;                        /* levels of LinuxCNC's outputs, as this module knows them */
+static uint32_t outputs_pending, levels_pending; /* outputs and levels of M64 and M65 */
+static uint32_t switched;                        /* levels of LinuxCNC's outputs, as far as this module knows */
 static EmcPose pose_to_set;
 
 static emcmot_status_t* status;
@@ -62,7 +62,7 @@ static void pose_from(EmcPose* pose, const double* from) {
 
 static void drop_outputs(TP_STRUCT* tp) { memset(&tp->syncdio, 0, sizeof tp->syncdio); }
 
-/* Nothing is queued, nothing moves. */
+/* Sets the state in which nothing is queued and nothing moves. */
 static void rest(TP_STRUCT* tp) {
   begun = posted;
   tp->goalPos = tp->currentPos;
@@ -84,7 +84,8 @@ static void forget_unpublished(void) {
   }
 }
 
-/* What motmod may ask for outside of coordinated mode, where no period comes by here: the last one counts. */
+/* Sends requests that motmod may make outside of coordinated mode, when no period runs here. The last request counts.
+ */
 static void flush_pending(void) {
   struct trammel_operation* operation;
   if (clear_pending && (operation = ring_slot(&ring, TRAMMEL_CLEAR)) != NULL) {
@@ -109,7 +110,8 @@ static void flush_pending(void) {
   }
 }
 
-/* M64 and M65 go by the planner: motmod switches the pin. What this module has not switched itself came from there. */
+/* M64 and M65 bypass the planner: motmod switches the pin. Every level that this module has not set itself came from
+   there. */
 static void watch_outputs(void) {
   int n;
   for (n = 0; n < TRAMMEL_OUTPUTS && n < config->numDIO; ++n) {
@@ -130,7 +132,7 @@ static int all_at_speed(void) {
   return 1;
 }
 
-/* motmod says how to probe only behind the call that adds the motion. */
+/* motmod tells how to probe only after the call that adds the motion. */
 static void publish(void) {
   int any = 0;
   for (; ring.head != ring.written; any = 1) {
@@ -153,7 +155,7 @@ static void begin_abort(TP_STRUCT* tp) {
   tp->aborting = 1;
 }
 
-/* A segment begins at the card: its outputs, and what LinuxCNC shows of it. */
+/* A segment starts at the card: switches its outputs, and shows its data in LinuxCNC. */
 static void begin_segment(TP_STRUCT* tp, const struct segment* segment) {
   int n;
   tp->execId = segment->id;
@@ -172,7 +174,8 @@ static void begin_segment(TP_STRUCT* tp, const struct segment* segment) {
   }
 }
 
-/* Feed and rapid override; what acts on both (feed hold, adaptive feed, a pause) is the rest of motmod's net scale. */
+/* Writes feed and rapid override. The factors for both (feed hold, adaptive feed, a pause) are the rest of motmod's net
+   scale. */
 static void write_scales(const TP_STRUCT* tp) {
   const int overrides = (status->enables_queued & FS_ENABLED) != 0;
   const double feed = overrides ? status->feed_scale : 1;
@@ -208,7 +211,8 @@ static void follow(TP_STRUCT* tp) {
   write_way(&segments[begun % KEPT].end, &tp->currentPos);
 }
 
-/* The card has captured the edge; motmod took a position of its own, or has not seen the probe's pin yet. */
+/* Takes the card's captured position of the edge. motmod has taken a position of its own, or has not seen the probe's
+   pin yet. */
 static void take_probe(void) {
   if (ring.status.probes == probes) return;
   probes = ring.status.probes;
@@ -218,14 +222,14 @@ static void take_probe(void) {
   status->probing = 0;
 }
 
-/* Once a servo period, in every mode of motmod. */
+/* Runs once per servo period, in every mode of motmod. */
 static void watch_owner(TP_STRUCT* tp) {
   const int replaced = session != 0 && ring.status.session != session;
   if (replaced || session == 0) {
     session = ring.status.session;
     probes = ring.status.probes;
     refusals = ring.status.refusals;
-    if (replaced) pose_in_force_at = UINT64_MAX; /* it knows no place of ours: until the next one is set */
+    if (replaced) pose_in_force_at = UINT64_MAX; /* the new owner does not know our position: wait until one is set */
   }
   if (ring.status.beat != beat) {
     silent = 0;
@@ -243,7 +247,7 @@ static void watch_owner(TP_STRUCT* tp) {
 
 static int owner_answers(void) { return session != 0 && silent <= SILENT_PERIODS; }
 
-/* An operation that was refused, or a fault of the card. */
+/* Handles a refused operation or a fault of the card. */
 static void take_refusal(TP_STRUCT* tp) {
   if (ring.status.refusals == refusals) return;
   refusals = ring.status.refusals;

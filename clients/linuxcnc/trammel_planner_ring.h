@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: 0BSD
  *
- * The planner module's end of the shared memory (trammel/linuxcnc/shared_region.h): attaches it, fills the ring of path
- * operations, reads the owner's status. No type of LinuxCNC. Functions but attach() neither wait nor allocate, and call
- * nothing of the kernel but FUTEX_WAKE. One thread.
+ * The planner module's end of the shared memory (trammel/linuxcnc/shared_region.h): attaches it, fills the ring of
+ * path operations, reads the owner's status. Uses no types of LinuxCNC. All functions except ring_attach() neither
+ * wait nor allocate, and make no system call except FUTEX_WAKE. One thread.
  */
 #ifndef TRAMMEL_PLANNER_RING_H
 #define TRAMMEL_PLANNER_RING_H
@@ -22,10 +22,10 @@
 
 struct ring {
   struct trammel_region* region;
-  uint64_t head;                /* published */
-  uint64_t written;             /* filled; those from head on are not published yet */
-  struct trammel_status status; /* last good copy */
-  uint32_t stale;               /* copies that failed */
+  uint64_t head;                /* operations published */
+  uint64_t written;             /* operations filled; those from `head` on are not published yet */
+  struct trammel_status status; /* last consistent copy */
+  uint32_t stale;               /* number of failed copies */
 };
 
 static int ring_is_locked(int file, int byte) {
@@ -33,8 +33,8 @@ static int ring_is_locked(int file, int byte) {
   return fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
-/* The file outlives its owner. Where an owner of another version has left it and nobody uses it, it begins anew. 0, or
-   -EPROTO. `other`: the lock of the other module. */
+/* The file outlives its owner. If an owner of another version has left it and no process uses it, it is cleared.
+   Returns 0 or -EPROTO. `other`: the lock of the other module. */
 static int ring_check_version(struct trammel_region* region, int file, int other) {
   if (region->version_owner == 0 || region->version_owner == TRAMMEL_REGION_VERSION) return 0;
   if (ring_is_locked(file, TRAMMEL_LOCK_OWNER) || ring_is_locked(file, other)) return -EPROTO;
@@ -42,7 +42,7 @@ static int ring_check_version(struct trammel_region* region, int file, int other
   return 0;
 }
 
-/* Of what attaching gave. */
+/* Explains an error of attaching. */
 static const char* ring_text_of(int error) {
   return error == -EBUSY    ? "another LinuxCNC has it: end that one, or choose another name for each"
          : error == -EPROTO ? "`trammel linuxcnc` is of another version: install both from one package"
@@ -53,8 +53,8 @@ static const char* ring_text_of(int error) {
              : strerror(-error);
 }
 
-/* Makes the region where it does not exist, as the user who runs LinuxCNC. 0, or -errno; -EBUSY: another planner module
-   has it; -EPROTO: its owner knows another layout. The descriptor stays open: it holds the lock. */
+/* Creates the region if it does not exist, as the user who runs LinuxCNC. Returns 0 or -errno; -EBUSY: another planner
+   module uses it; -EPROTO: its owner uses another layout. The descriptor stays open because it holds the lock. */
 static int ring_attach(struct ring* ring, const char* name) {
   char path[128];
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = TRAMMEL_LOCK_PLANNER, .l_len = 1};
@@ -87,7 +87,7 @@ static uint64_t ring_free(const struct ring* ring) {
   return TRAMMEL_OPERATIONS - (ring->written - __atomic_load_n(&ring->region->operation_tail, __ATOMIC_ACQUIRE));
 }
 
-/* The next slot, zeroed; NULL where the ring is full. ring_fill() makes it one of the written ones. */
+/* The next slot, zeroed; NULL if the ring is full. ring_fill() counts it as filled. */
 static struct trammel_operation* ring_slot(struct ring* ring, uint32_t kind) {
   struct trammel_operation* operation = &ring->region->operations[ring->written % TRAMMEL_OPERATIONS];
   if (ring_free(ring) == 0) return NULL;
@@ -106,7 +106,7 @@ static void ring_publish_one(struct ring* ring) {
   __atomic_store_n(&ring->region->operation_head, ++ring->head, __ATOMIC_RELEASE);
 }
 
-/* The owner's status; the last good copy where the owner writes just now. 0, or -1 for that. */
+/* Reads the owner's status. Returns 0, or -1 and keeps the last consistent copy if the owner is writing it. */
 static int ring_read_status(struct ring* ring) {
   const struct trammel_region* region = ring->region;
   struct trammel_status copy;

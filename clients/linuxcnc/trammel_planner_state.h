@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only
  *
- * The functions of LinuxCNC's planner interface that keep or tell a value, and the names of all 30: without
- * EXPORT_SYMBOL they stay within the module, and motmod does not load.
+ * The functions of LinuxCNC's planner interface that store or return a value, and the names of all 30. Without
+ * EXPORT_SYMBOL the names stay local to the module, and motmod does not load.
  */
 #ifndef TRAMMEL_PLANNER_STATE_H
 #define TRAMMEL_PLANNER_STATE_H
@@ -92,7 +92,8 @@ int tpQueueDepth(TP_STRUCT* const tp) { return tp->depth; }
 int tpActiveDepth(TP_STRUCT* const tp) { return tp->activeDepth; }
 int tpGetMotionType(TP_STRUCT* const tp) { return tp->motionType; }
 
-/* LinuxCNC waits with further motions. motmod asks at the end of each servo period, whatever its mode. */
+/* Whether LinuxCNC must wait before it adds motions. motmod calls this at the end of each servo period, in every mode.
+ */
 int tcqFull(TC_QUEUE_STRUCT const* const queue) {
   struct __comp_state* __comp_inst = __comp_first_inst;
   (void)queue;

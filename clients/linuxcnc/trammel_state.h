@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-only
  *
- * State of the component `trammel`, and when it follows: the rules by which nothing moves by itself.
+ * State of the component `trammel`, and the rules for when it follows the command, so that nothing moves unexpectedly.
  */
 #ifndef TRAMMEL_STATE_H
 #define TRAMMEL_STATE_H
@@ -11,30 +11,31 @@
 #include "trammel_pins.h"
 
 enum {
-  LINK_PERIODS = 250,       /* without a new beat before link-ok falls; parameter link-periods */
-  FAULT_WATCHDOG = 1 << 14, /* in trammel_status.fault, as in the register map */
-  LEVEL_UP = 2,             /* packet-error-level, as hostmot2 counts it */
+  LINK_PERIODS = 250,       /* periods without a new beat before link-ok falls; parameter link-periods */
+  FAULT_WATCHDOG = 1 << 14, /* bit of trammel_status.fault, as in the register map */
+  LEVEL_UP = 2,             /* increment of packet-error-level, as in hostmot2 */
   LEVEL_MOST = 10
 };
-/* Without a limit of acceleration, the card may be this far from the command when it begins to follow. */
+/* Without a limit of acceleration, largest distance from card to command at which following may start. */
 static const double start_distance = 2; /* pulses */
-/* The owner refuses a target that is faster than maxvel times this: what is clipped to maxvel is rounded. */
+/* The owner refuses a target faster than maxvel times this factor; the margin is for the rounding of targets limited to
+   maxvel. */
 #define SPEED_RESERVE 1.05
 
 enum mode {
   OFF,       /* no joint is enabled */
-  WAITING,   /* enabled; the card does not rest yet */
+  WAITING,   /* enabled; the card is not at rest yet */
   FOLLOWING, /* enabled; the card gets the targets */
-  LOST       /* enabled, but link, owner or card failed: until every joint is disabled */
+  LOST       /* enabled, but link, owner or card failed; lasts until every joint is disabled */
 };
 
 struct joint {
   struct follower follower;
-  int64_t offset;     /* pulses from machine zero to HAL's zero: where the index edge was */
-  double scale;       /* pulses per unit in force */
-  double shown;       /* what the parameter position-scale shows for the machine file's */
+  int64_t offset;     /* pulses from machine zero to HAL's zero, the index edge */
+  double scale;       /* scale in force, pulses per unit */
+  double shown;       /* value that position-scale shows for the machine file's scale */
   int follows;        /* enabled in the last period */
-  int index_reported; /* the owner's bit stays set until it has seen the period's bit fall */
+  int index_reported; /* the index was reported; the owner's bit stays set until it sees the period's bit fall */
 };
 
 struct card {
@@ -43,12 +44,12 @@ struct card {
   struct joint joints[TRAMMEL_JOINTS];
   int joint_count;
   enum mode mode;
-  long long began;                     /* ns, of this period; 0: `read` does not run */
-  long long read_before, fresh_before; /* ns: when `read` ran last, and when it last met a new beat */
+  long long began;                     /* ns, start of this period; 0: `read` does not run */
+  long long read_before, fresh_before; /* ns: last run of `read`; last new beat */
   uint64_t beat, session;
   uint32_t silent;     /* periods without a new beat */
   uint32_t waited;     /* periods in WAITING */
-  int told, was_clear; /* the stop's message; the pin `clear` in the last period */
+  int told, was_clear; /* the stop was reported; the pin `clear` in the last period */
   int clear_pending, dropped;
 };
 
@@ -75,7 +76,7 @@ static void lose(struct card* card, const char* why) {
   rtapi_print_msg(RTAPI_MSG_ERR, "trammel: %s; targets are followed again after the machine was off\n", why);
 }
 
-/* The realtime printf knows no "%.*s". */
+/* The realtime printf does not support "%.*s". */
 static void tell_stop(const struct trammel_status* status) {
   char text[sizeof status->text];
   memcpy(text, status->text, sizeof text);
@@ -83,7 +84,7 @@ static void tell_stop(const struct trammel_status* status) {
   rtapi_print_msg(RTAPI_MSG_ERR, "trammel: stop cause %u: %s\n", status->cause, text);
 }
 
-/* In each period, with the newest status. */
+/* Runs in each period, with the newest status. */
 static void watch(struct card* card) {
   const struct trammel_status* status = status_of(card);
   const int enabled = card->mode == WAITING || card->mode == FOLLOWING;
@@ -102,13 +103,13 @@ static void watch(struct card* card) {
   card->told = card_failed(card);
 }
 
-/* The command in pulses from machine zero; NAN: none. */
+/* The command in pulses from machine zero; NAN if it is not finite. */
 static double commanded_pulses(const struct card* card, int n) {
   const double command = *card->pins->joint[n].position_cmd * card->joints[n].scale + (double)card->joints[n].offset;
   return isfinite(command) ? command : NAN;
 }
 
-/* 0: the command is too far away to begin. */
+/* Starts following; 0: the command is too far away. */
 static int begin_joint(struct card* card, int n, double place) {
   const double command = commanded_pulses(card, n);
   follow_begin(&card->joints[n].follower, place, isnan(command) ? place : command);
@@ -128,7 +129,7 @@ static void begin(struct card* card) {
   if (!near) lose(card, "position-cmd is not where the card stands: begin from position-fb, or set maxaccel");
 }
 
-/* The card rests, and its owner has seen that the machine was off. */
+/* Whether the card is at rest, and its owner has seen that the machine was off. */
 static int may_begin(const struct card* card) {
   const struct trammel_status* status = status_of(card);
   return (status->flags & TRAMMEL_STATUS_AT_REST) && status->state != TRAMMEL_STREAMING;

@@ -19,7 +19,7 @@ constexpr std::uint64_t kCountLimit =
     card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Arc))->count_maximum + 1;  // also of path ticks
 constexpr std::int64_t kMaxQuadrants = std::numeric_limits<decltype(ArcCommand::quadrants)>::max();
 
-// A lattice point relative to the centre, in the conic's own unit.
+// A lattice point relative to the centre, in the units of its conic.
 struct Point {
   std::int64_t x;
   std::int64_t y;
@@ -30,7 +30,7 @@ struct Conic {
   std::int64_t a;
   std::int64_t b;
   Int128 n;
-  std::int64_t step;  // units a pulse
+  std::int64_t step;  // units per pulse
 
   Int128 deviation(const Point& p) const { return Int128(a) * p.x * p.x + Int128(b) * p.y * p.y - n; }
 };
@@ -46,14 +46,15 @@ std::int64_t square_root(Int128 value) {
 
 Int128 radius_squared(const Point& p) { return Int128(p.x) * p.x + Int128(p.y) * p.y; }
 
-// Zero counts as positive, as in the card: 0 right and up, 1 left and up, 2 left and down, 3 right and down.
+// Quadrants: 0 right and up, 1 left and up, 2 left and down, 3 right and down. Zero counts as positive, as in the card.
 int quadrant(const Point& p) {
   if (p.y >= 0) return p.x >= 0 ? 0 : 1;
   return p.x >= 0 ? 3 : 2;
 }
 
-// Direction from the centre in quarters of a turn, 0 .. 4, by divisions alone, so that every machine finds the same:
-// right on the axes and their bisectors, never off by 1/16 of a quarter. 0 for the centre itself.
+// Direction from the centre in quarter turns, 0 .. 4; 0 for the centre itself. Computed by divisions alone, so that
+// every host gets the same value: exact on the axes and their bisectors, elsewhere wrong by less than 1/16 of a quarter
+// turn.
 double direction_of(const Point& p) {
   const double x = std::abs(static_cast<double>(p.x));
   const double y = std::abs(static_cast<double>(p.y));
@@ -62,26 +63,27 @@ double direction_of(const Point& p) {
   return side + (side % 2 == 0 ? y : x) / (x + y);
 }
 
-// Quadrant changes from start to end. The direction between the rounded points is known but for full turns; rounding
-// moves it by less than half a turn from the commanded sweep (radius >= 1 pulse), so the nearest number of turns is
-// meant, and no last digit of the sweep changes it. An end that rounding has put behind the start comes out as -1 turn
-// and some; the card then goes straight to it.
+// Number of quadrant changes from start to end. The direction between the rounded points is known up to full turns.
+// Rounding moves it by less than half a turn from the commanded sweep (radius >= 1 pulse), so the nearest number of
+// turns is the right one, and the last digits of the sweep do not matter. If rounding puts the end behind the start,
+// the result would be -1 turn plus some changes; it becomes 0, and the card goes straight to the end.
 std::int64_t quadrant_changes(const Point& start, const Point& end, bool clockwise, double sweep, std::uint32_t turns) {
   const int direction = clockwise ? -1 : 1;
   double ahead = direction * (direction_of(end) - direction_of(start));
   if (ahead < 0) ahead += 4;
   const std::int64_t more = std::llround((sweep / (kPi / 2) - ahead) / 4) + turns;
   std::int64_t changes = (direction * (quadrant(end) - quadrant(start)) + 4) % 4;
-  if (changes == 0 && ahead > 2) changes = 4;  // the same quadrant, but behind
+  if (changes == 0 && ahead > 2) changes = 4;  // end in the same quadrant, behind the start
   changes += 4 * more;
   if (changes > kMaxQuadrants) refuse_arc(fmt::format("{} quadrants, at most {} fit", changes, kMaxQuadrants));
   return changes > 0 ? changes : 0;
 }
 
-// Where the walk enters the next quadrant, exactly. In a quadrant one coordinate u moves towards zero, in steps taken
-// while F >= 0, the other, v, away from zero, in steps taken while F < 0. The quadrant is left from u's last column
-// before the sign change, at the first v from the present one on with F >= 0 there: every earlier column, being
-// farther from zero, needs a smaller |v|, so none of them has taken v beyond it.
+// The exact point at which the walk enters the next quadrant. In a quadrant one coordinate u moves towards zero, in
+// steps taken while F >= 0; the other, v, moves away from zero, in steps taken while F < 0. The walk leaves the
+// quadrant from the last column of u before the sign change, at the first v, from the present one on, with F >= 0
+// there. Every earlier column is farther from zero and needs a smaller |v|, so in none of them has v gone beyond that
+// point.
 Point next_entry(const Conic& conic, const Point& from, bool clockwise) {
   const int side = quadrant(from);
   const bool x_inward = (side % 2 == 0) != clockwise;
@@ -89,13 +91,13 @@ Point next_entry(const Conic& conic, const Point& from, bool clockwise) {
   std::int64_t& u = x_inward ? at.x : at.y;
   std::int64_t& v = x_inward ? at.y : at.x;
   const std::int64_t step = conic.step;
-  const std::int64_t phase = ((u % step) + step) % step;  // of the lattice, 0 .. step - 1
+  const std::int64_t phase = ((u % step) + step) % step;  // offset of the lattice, 0 .. step - 1
   const std::int64_t last = u >= 0 ? phase : phase - step;
   const std::int64_t entered = u >= 0 ? last - step : last + step;
   u = last;
   const std::int64_t outward = v >= 0 ? step : -step;
   const std::int64_t v_first = v;
-  // Bisection over the number of v steps; 2^35 pulses reach beyond every curve that the bounds admit.
+  // Bisects the number of v steps; 2^35 pulses exceed every curve that the bounds admit.
   std::int64_t inside = -1;
   std::int64_t outside = std::int64_t{1} << 35;
   while (outside - inside > 1) {
@@ -112,8 +114,8 @@ std::uint64_t steps_between(const Conic& conic, const Point& p, const Point& q) 
   return static_cast<std::uint64_t>((std::llabs(p.x - q.x) + std::llabs(p.y - q.y)) / conic.step);
 }
 
-// The walk in 8 directions, as the card makes it: a step inward (towards the zero of its coordinate), outward or both
-// at once. Word holds twice F and the changes of one step.
+// The walk with 8 directions, as the card makes it: each step moves inward (the coordinate that approaches zero),
+// outward, or both at once. Word must hold twice F and the changes of one step.
 template <class Word>
 class EightDirections {
  public:
@@ -128,7 +130,8 @@ class EightDirections {
   const Point& at() const { return at_; }
   std::uint64_t steps() const { return steps_; }
 
-  // Through the next change of quadrant; with `end`, up to where either coordinate reaches or passes the end's.
+  // Walks through the next change of quadrant; with `end`, to the point where either coordinate reaches or passes that
+  // of the end.
   void walk_quadrant(const Point* end) {
     const int side = quadrant(at_);
     const bool x_inward = (side % 2 == 0) != clockwise_;
@@ -150,13 +153,13 @@ class EightDirections {
     at_ = x_inward ? Point{inward.at, outward.at} : Point{outward.at, inward.at};
   }
 
-  // Straight to the end, both coordinates at once while both differ.
+  // Walks straight to the end; both coordinates move at once while both differ.
   void walk_straight(const Point& end) {
     steps_ += static_cast<std::uint64_t>(std::max(std::llabs(end.x - at_.x), std::llabs(end.y - at_.y)) / unit_);
     at_ = end;
   }
 
-  // `times` walks more of `steps` each that come back to where they begin.
+  // Adds `times` further walks of `steps` each that return to their start.
   void repeat(std::uint64_t steps, std::uint64_t times) { steps_ += steps * times; }
 
  private:
@@ -167,7 +170,7 @@ class EightDirections {
           change(weight * Word(step) * Word(2 * coordinate + step)),
           twice_half(weight * Word(2 * unit * unit)) {}
 
-    // The change of F that the step makes.
+    // Makes the step, and returns its change of F.
     Word take() {
       const Word made = change;
       change = change + twice_half;
@@ -199,7 +202,7 @@ std::uint64_t walked_length(const Conic& conic, const Point& start, const Point&
   std::uint64_t steps_ago = 0;
   std::int64_t left = changes;
   while (left != 0) {
-    // F belongs to the point alone: a turn that ends where the last one did repeats itself.
+    // F depends on the point alone, so a turn that ends where the previous one did repeats itself.
     const bool turn_over = left != changes && (changes - left) % 4 == 0;
     if (turn_over && walk.at().x == turn_ago.x && walk.at().y == turn_ago.y) {
       walk.repeat(walk.steps() - steps_ago, static_cast<std::uint64_t>(left / 4));
@@ -218,8 +221,8 @@ std::uint64_t walked_length(const Conic& conic, const Point& start, const Point&
   return walk.steps();
 }
 
-// L in 4 directions: both coordinates are monotone in a quadrant, and from the last entry to the end, so distances
-// along the axes add.
+// L with 4 directions. Within a quadrant, and from the last entry to the end, both coordinates are monotone, so the
+// number of steps is the sum of the distances along the axes.
 std::uint64_t summed_length(const Conic& conic, const Point& start, const Point& end, bool clockwise,
                             std::int64_t changes) {
   std::uint64_t length = 0;
@@ -232,7 +235,8 @@ std::uint64_t summed_length(const Conic& conic, const Point& start, const Point&
   return length + steps_between(conic, at, end);
 }
 
-// L, which is neither 0 nor beyond the card's count. A circle's F and changes stay below 2^45, an ellipse's below 2^64.
+// L; refuses 0 and a number beyond the card's count. F and its changes stay below 2^45 for a circle, below 2^64 for an
+// ellipse.
 std::uint64_t path_length(const Conic& conic, const Point& start, const Point& end, bool clockwise,
                           std::int64_t changes, StepRule rule) {
   const bool eight = rule == StepRule::kEightDirections;
@@ -274,8 +278,8 @@ ArcCommand fill(const Geometry& geometry, const Conic& conic, const Point& start
   return arc;
 }
 
-// Square of the mean of start and end radius: halves the distance that rounding puts between them, so that both ends
-// lie equally near to the curve.
+// Square of the mean of start and end radius. The mean halves the distance that rounding puts between the radii, so
+// that both ends are equally close to the curve.
 Int128 mean_radius_squared(const Point& start, const Point& end) {
   const Int128 first = radius_squared(start);
   const Int128 second = radius_squared(end);
@@ -286,8 +290,9 @@ Int128 mean_radius_squared(const Point& start, const Point& end) {
   return Int128((sum * sum + (Int128(1) << (kShift - 1))).bits() >> kShift);  // positive
 }
 
-// In centre units. In 4 directions a walk strays 1 + 1/(4 R) inwards, which takes it over the centre up to a radius R
-// of (1 + sqrt 2)/2 = 1.21; from 1.5 on it keeps a third of a pulse away. In 8 it does from one pulse on.
+// In centre units. With 4 directions a walk deviates inwards by up to 1 + 1/(4 R), which takes it across the centre for
+// a radius R up to (1 + sqrt 2)/2 = 1.21; from 1.5 on it stays a third of a pulse away. With 8 directions a radius of
+// one pulse suffices.
 std::int64_t least_radius(StepRule rule) {
   return rule == StepRule::kEightDirections ? kCentreUnitsPerPulse : kCentreUnitsPerPulse * 3 / 2;
 }
@@ -305,7 +310,7 @@ bool within(const Point& p, std::int64_t limit) { return std::llabs(p.x) <= limi
 ArcCommand prepare(const ArcGeometry& geometry, StepRule rule) {
   check_common(geometry);
   constexpr std::int64_t kUnit = kCentreUnitsPerPulse;
-  // Compared before the negation, which the most negative value would not survive.
+  // Checked before the negation, which would overflow for the most negative value.
   if (geometry.centre_x < -kMaxCentreDistance || geometry.centre_x > kMaxCentreDistance ||
       geometry.centre_y < -kMaxCentreDistance || geometry.centre_y > kMaxCentreDistance) {
     refuse_arc("the centre is farther than 2^24 pulses from the start");
@@ -319,9 +324,9 @@ ArcCommand prepare(const ArcGeometry& geometry, StepRule rule) {
     refuse_arc(fmt::format("radius of {:.4g} pulses, at least {:g} in {} directions: send lines",
                            pulses_of(square_root(mean)), pulses_of(least), directions(rule)));
   }
-  // A step to the side of the circle adds up to 1/2 to R^2 (in pulses), a step inwards takes nothing off it: half a
-  // square pulse less makes outside and inside errors alike, 1 + 1/(4 R). About a whole pulse F is then a whole number
-  // and one half, so that every sign is that of STEER's F. In 8 directions errors are alike without.
+  // A sideways step adds up to 1/2 to R^2 (in pulses), while an inward step subtracts nothing from it. With R^2 reduced
+  // by half a square pulse, errors outside and inside are equal, 1 + 1/(4 R). About a whole pulse F is then an integer
+  // plus one half, so every sign is that of STEER's F. With 8 directions errors are equal without this.
   const std::int64_t less = rule == StepRule::kEightDirections ? 0 : kUnit * kUnit / 2;
   return fill(geometry, Conic{1, 1, mean - less, kUnit}, start, end, rule);
 }
@@ -336,7 +341,7 @@ ArcCommand prepare(const EllipseGeometry& geometry, StepRule rule) {
                            directions(rule)));
   }
   const Point start{geometry.start_x, geometry.start_y};
-  // A point rounded from the curve is at most one pulse outside its bounding box. Looked at before any arithmetic.
+  // A point rounded from the curve is at most one pulse outside its bounding box. Checked before any arithmetic.
   const auto in_box = [&](const Point& p) { return -a - 1 <= p.x && p.x <= a + 1 && -b - 1 <= p.y && p.y <= b + 1; };
   if (!in_box(start)) refuse_arc("the start is outside the ellipse's bounding box");
   const Point end{start.x + geometry.end_x, start.y + geometry.end_y};

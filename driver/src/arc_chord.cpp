@@ -23,9 +23,9 @@ constexpr unsigned kMinM = 5;
 constexpr unsigned kMaxM = 31;
 constexpr double kMinRadius = 0.125;    // pulses
 constexpr double kMaxToCircle = 0.375;  // pulses
-constexpr double kMaxShift = 0x1p22;    // whole pulses of a coordinate in 2^-40 pulses that 63 bits hold, with room
+constexpr double kMaxShift = 0x1p22;    // largest coordinate, pulses, in 2^-40 pulses of 63 bits, with margin
 
-// From the centre, pulses.
+// A vector from the centre, pulses.
 struct Ray {
   Ray(double from_x, double from_y)
       : x(from_x), y(from_y), radius(std::sqrt(x * x + y * y)), cosine(x / radius), sine(y / radius) {}
@@ -43,10 +43,10 @@ Ray ray(std::int64_t x, std::int64_t y) {
 
 std::int64_t rounded(double value, int fraction_bits) { return std::llround(std::ldexp(value, fraction_bits)); }
 
-// From a point at `radius` to the circle `mean`, along the radius.
+// Distance from a point at `radius` to the circle `mean`, along the radius.
 double to_circle(double radius, double mean) { return std::clamp(mean - radius, -kMaxToCircle, kMaxToCircle); }
 
-// The circle that the card turns on, and where on it the arc begins and ends.
+// The circle on which the card rotates, and the start and end of the arc on it.
 class Circle {
  public:
   explicit Circle(const ArcGeometry& arc)
@@ -61,9 +61,9 @@ class Circle {
     sweep = swept(arc);
   }
 
-  // Path ticks at 2^m a chord; below 2^53.
+  // Number of path ticks at 2^m per chord; below 2^53.
   double path_ticks(unsigned m) const { return std::round(std::ldexp(sweep / turn, static_cast<int>(m))); }
-  // The fewest for which X and Y have bits.
+  // The smallest m for which X and Y fit their fields.
   unsigned least_m() const {
     unsigned m = kMinM;
     while (std::ldexp(radius, -static_cast<int>(m)) >= kMaxShift) ++m;
@@ -75,8 +75,8 @@ class Circle {
   double radius;
   int sense;  // 1: counter-clockwise
   unsigned k = kMinK;
-  double turn = 0;   // of a chord
-  double sweep = 0;  // between the rounded ends, turns included
+  double turn = 0;   // rotation of a chord, radians
+  double sweep = 0;  // angle between the rounded ends, including turns
 
  private:
   void check_radii() const {
@@ -84,20 +84,20 @@ class Circle {
       if (!(at.radius >= kMinRadius)) refuse_arc(fmt::format("radius of {:.4g} pulses: send a line", at.radius));
       if (!(at.radius <= kMaxChordRadius)) refuse_arc(fmt::format("radius of {:.4g} pulses", at.radius));
     }
-    // Rounding parts them by three pulses at most; a program's own rounding may be coarser than the pulses.
+    // Rounding makes the radii differ by at most three pulses; a program's own rounding may be coarser than the pulses.
     if (std::abs(start.radius - end.radius) > std::max(3.0, radius / 2)) {
       refuse_arc(fmt::format("radius {:.4f} pulses at the start, {:.4f} at the end", start.radius, end.radius));
     }
   }
 
-  // The angle between the points is known but for full turns; the nearest to the commanded sweep is meant.
+  // The angle between the points is known up to full turns; the value nearest to the commanded sweep is the right one.
   double swept(const ArcGeometry& arc) const {
     double ahead = 0;
     if (arc.end_x != 0 || arc.end_y != 0) {
       ahead = sense * (arc_tangent(end.y, end.x) - arc_tangent(start.y, start.x));
     }
     const double nearest = ahead + 2 * kPi * std::round((arc.sweep - ahead) / (2 * kPi));
-    // Each end lies within about a pulse of where the sweep was taken.
+    // Each end is within about a pulse of the point for which the sweep was computed.
     constexpr double kMaxApart = 4;  // pulses
     if (std::abs(nearest - arc.sweep) * std::min(start.radius, end.radius) > kMaxApart) {
       refuse_arc(fmt::format("a sweep of {:.6f} radians, but {:.6f} between the points", arc.sweep, nearest));
@@ -108,7 +108,7 @@ class Circle {
   }
 };
 
-// Where the chords are, as the card makes them: vertices at whole chord times for x, at half ones for y.
+// The chords as the card makes them: vertices at whole chord times for x, at half ones for y.
 class Polygon {
  public:
   Polygon(const Circle& circle, unsigned m) : circle_(circle), chord_(std::int64_t{1} << m) {}
@@ -129,7 +129,7 @@ class Polygon {
  private:
   SineCosine turned(double chords) const { return sine_cosine(circle_.sense * circle_.turn * chords); }
 
-  // On the straight line between the vertices before and behind, which lie `late` ticks after whole chords.
+  // Interpolates on the straight line between the adjacent vertices, which lie `late` ticks after whole chords.
   template <class At>
   double between(std::int64_t ticks, std::int64_t late, At at) const {
     const std::int64_t since = ticks - late;
@@ -145,16 +145,16 @@ class Polygon {
   std::int64_t chord_;  // path ticks
 };
 
-// value / 2^k as the card rounds it.
+// value / 2^k, rounded as the card does.
 std::int64_t shifted(std::int64_t value, unsigned k) { return (value >> k) + (value >> (k - 1) & 1); }
 
-// Of both axes, 2^-40 pulses a path tick.
+// Increments of both axes, 2^-40 pulses per path tick.
 struct Increments {
   std::int64_t first_x, first_y, closing_x, closing_y;
-  bool fit;  // at most a pulse a tick
+  bool fit;  // every increment is at most a pulse per tick
 };
 
-// The state and its first chords: as the card computes them.
+// Sets the initial state as the card uses it.
 void set_state(ArcChordCommand& arc, const Circle& circle) {
   const int bits = kFractionBits - arc.m;
   const double half_sine = std::ldexp(1.0, -static_cast<int>(circle.k) - 1);
@@ -203,7 +203,7 @@ void check(const HelixGeometry& geometry) {
     refuse_arc("the centre is farther than 2^31 pulses from the start");
   }
   for (const std::int64_t pulses : geometry.further) {
-    constexpr std::int64_t kRange = std::int64_t{1} << 32;  // from one end of the position counter to the other
+    constexpr std::int64_t kRange = std::int64_t{1} << 32;  // the range of the position counter
     if (pulses < -kRange || pulses > kRange) refuse_arc(fmt::format("{} pulses of a further axis", pulses));
   }
 }
@@ -214,7 +214,7 @@ std::uint64_t most_further(const HelixGeometry& geometry) {
   return static_cast<std::uint64_t>(most);
 }
 
-// All but the ticks and what depends on them.
+// The command without the ticks and the fields that depend on them.
 ArcChordCommand on_plane(const HelixGeometry& geometry, const Circle& circle) {
   ArcChordCommand arc;
   arc.clockwise = geometry.arc.clockwise;
@@ -227,7 +227,7 @@ ArcChordCommand on_plane(const HelixGeometry& geometry, const Circle& circle) {
   return arc;
 }
 
-// The arc at 2^m path ticks a chord; false where an axis would make more than a pulse a tick.
+// Computes the arc with 2^m path ticks per chord; false if an axis would make more than a pulse per tick.
 bool at_density(ArcChordCommand& arc, unsigned m, const Circle& circle, const HelixGeometry& geometry) {
   arc.m = static_cast<std::uint8_t>(m);
   arc.path_ticks = static_cast<std::uint64_t>(circle.path_ticks(m));

@@ -62,7 +62,7 @@ void Card::configure_axis(unsigned axis, const AxisSettings& settings) {
 }
 
 std::uint32_t Card::ratio_of(double percent, double max_percent) {
-  // Written so that no NaN gets through.
+  // Written so that NaN is refused, too.
   if (!(max_percent > 0 && percent >= 0 && percent <= max_percent)) {
     throw ArgumentError(fmt::format("override of {} %: 0 to {} % are possible", percent, max_percent));
   }

@@ -34,7 +34,7 @@ CaptureStates states_of(std::uint32_t word) {
   return states;
 }
 
-constexpr unsigned kMostQueued = 16;  // at one call: callers have room for so many
+constexpr unsigned kMostQueued = 16;  // per call: callers have room for this many
 unsigned captures_in(std::uint32_t queue) { return queue & field::kCaptureQueueCaptures; }
 
 }  // namespace
@@ -102,7 +102,8 @@ CaptureQueue Card::read_capture_queue() {
   return {captures_in(word), static_cast<std::uint16_t>(word >> field::kCaptureQueueLostShift)};
 }
 
-// Each is read before it is dropped, by its number, so that a link that fails between loses none and drops none twice.
+// Each capture is read before it is dropped, and dropped by its number. So a link that fails in between loses no
+// capture and drops no capture twice.
 std::vector<QueuedCapture> Card::take_queued_captures() {
   check_capture_queue();
   std::vector<QueuedCapture> result;

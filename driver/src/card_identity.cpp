@@ -27,7 +27,7 @@ std::uint32_t longest_command(bool map::Command::*queue, const Identification& c
   return result;
 }
 
-// What to update where the card has another version than the driver.
+// The component to update if card and driver have different versions.
 const char* update(std::uint32_t on_card, std::uint32_t here) {
   return on_card > here ? "update the driver" : "update the card's bitstream";
 }
@@ -46,7 +46,7 @@ void check_versions(const Identification& card) {
 }
 
 void check_build(const Identification& card) {
-  constexpr std::uint32_t kDeepest = 32768;  // halfwords; larger ones the RTL refuses to build
+  constexpr std::uint32_t kDeepest = 32768;  // halfwords; the RTL refuses to build larger queues
   check_field(reg::kClockHz, card.clock_hz, 1, register_at(reg::kClockHz).mask, "Hz (its clock strap)");
   check_field(reg::kGeometryDepth, card.geometry_depth, longest_command(&map::Command::to_geometry, card), kDeepest,
               "halfwords");
@@ -70,7 +70,7 @@ struct StepTimes {
   std::size_t count = 0;
 };
 
-// Reads of what cannot be refused by a card that this driver knows.
+// Makes reads that a card known to this driver cannot refuse.
 void read_identity(Bus& bus, Access* accesses, std::size_t count) {
   const std::size_t made = bus.transfer(accesses, count);
   if (made < count) {

@@ -1,4 +1,4 @@
-// Who a card is: read when it is opened, and compared later.
+// A card's identification: read when it is opened, and checked later.
 #pragma once
 
 #include "trammel/driver/bus.hpp"
@@ -10,10 +10,10 @@ namespace trammel::driver {
 
 // As Card::open(). Writes nothing.
 Identification read_identification(Bus& bus);
-// Of a card that read_identification() has taken.
+// The timing of a card that read_identification() has accepted.
 CardTiming read_timing(Bus& bus, const Identification& card);
 
-// Throws LinkError if what answers is no card any more, StateError if it has other step times than it was given.
+// Throws LinkError if the device is no longer a card, StateError if its step times are not those that were set.
 void check_identity(CardParts& card);
 
 Build read_build(Registers& registers);

@@ -21,7 +21,7 @@ bool CardInterrupt::tells_of_room() const {
   return registers_.bus().has_interrupt() && card_map::has_engine(card_.engines, card_map::engine::kWatermarks);
 }
 
-// Fewer than depth - room + 1 are queued when there is that much room.
+// With that much room, fewer than depth - room + 1 halfwords are queued.
 std::uint32_t CardInterrupt::wake_at_room(std::uint32_t geometry, std::uint32_t feed) {
   std::uint32_t wake = 0;
   if (geometry != 0) {

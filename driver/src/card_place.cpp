@@ -1,4 +1,4 @@
-// The machine's place that a card keeps: reads and writes of its registers, and how a program begins there.
+// The machine's place that a card keeps: register accesses, and how a program starts from it.
 #include "trammel/driver/card_place.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr unsigned kMapMinorOfPlace = 3;  // the machine's place came with map 3.3
 
-// A card without it would refuse an access to an address, which says less.
+// Checked here because the card's own refusal of the address would explain less.
 void check_map(const Identification& card) {
   if (card.map_minor >= kMapMinorOfPlace) return;
   throw ArgumentError(
@@ -109,7 +109,7 @@ std::array<std::int32_t, card_map::kMaxAxes> CardPlace::pulses() const {
 CardPlace read_card_place(Card& card) {
   CardPlace place;
   place.now = card.read_snapshot();
-  place.bits = card.read_place();  // behind it: an axis that is valid now was valid then
+  place.bits = card.read_place();  // after the snapshot: an axis that is valid now was valid then
   place.scales = card.read_scales();
   place.keeps = card.read_keeps_place();
   for (unsigned n = 0; n < card.identification().axes; ++n) place.zero[n] = card.read_machine_zero(n);

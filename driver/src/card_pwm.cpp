@@ -1,4 +1,4 @@
-// Pulses on outputs: reads and writes of their registers, and the scale of a duty that follows the speed.
+// PWM on outputs: register accesses, and the scale of a duty that follows the speed.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -26,7 +26,7 @@ bool Card::has_soft_limits() const {
   return card_map::has_engine(identification().engines, card_map::engine::kSoftLimits);
 }
 
-// None holds while the ends change.
+// No soft limit is active while the ends change.
 void Card::set_soft_limits(const std::vector<std::optional<SoftRange>>& ranges) {
   require_soft_limits(*this);
   if (ranges.size() > identification().axes) {

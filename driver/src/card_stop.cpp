@@ -18,7 +18,7 @@ namespace reg = card_map::reg;
 void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
   constexpr const char* kContext = "waiting for the end of motion";
   WaitBudget budget(*this, kContext, 0);
-  // Whatever runs is at one of the ratios.
+  // The commands under way run at one of the ratios; the slowest one gives the longest time.
   PieceClass slowest = PieceClass::kFeed;
   for (const PieceClass other : {PieceClass::kRapid, PieceClass::kFixed}) {
     if (ratio(other) != 0 && (ratio(slowest) == 0 || ratio(other) < ratio(slowest))) slowest = other;
@@ -53,7 +53,7 @@ Snapshot Card::stop(std::chrono::nanoseconds margin) {
   wait_for_rest(kSlowestSlew / std::max<std::uint32_t>(parts_->registers.read(reg::kSlew), 1) + margin_clocks, true);
   const Snapshot at_rest = read_snapshot();
   abort();
-  wait_for_rest(margin_clocks, false);  // pulses that the shapers have accepted
+  wait_for_rest(margin_clocks, false);  // waits for pulses that the shapers have accepted
   Snapshot end = read_snapshot();
   set_hold(false);
   end.geometry_begun = at_rest.geometry_begun;
@@ -73,8 +73,8 @@ void Card::wait_until_stopped(std::chrono::nanoseconds margin) {
   }
 }
 
-// The stop first: a card on its ramp would refuse commands though FAULT is clear, and make a new fault of the old
-// cause.
+// Waits for the stop first: a card on its ramp would refuse commands although FAULT is clear, and would set the same
+// fault again.
 void Card::clear_faults(std::chrono::nanoseconds margin) {
   wait_until_stopped(margin);
   const auto times = parts_->watchdog.restart();
@@ -85,14 +85,14 @@ void Card::clear_faults(std::chrono::nanoseconds margin) {
   parts_->registers.transfer(accesses.data(), count + 1, "clearing faults");
 }
 
-// Until nothing runs any more, or, with `held_is_rest`, until the time base stands and nothing moves.
+// Waits until the card is idle, or, with `held_is_rest`, until the time base is held and nothing moves.
 void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
   const std::uint64_t pause = poll_interval(timing().clock_hz);
   for (std::uint64_t waited = 0;; waited += pause) {
     const Status now = read_status();
     parts_->registers.throw_if_faulted(now, "stop");
     parts_->watchdog.look();
-    // Settled: the ticks taken have made their steps, so that REST behind the abort is exact.
+    // Settled: all ticks taken have made their steps, so REST is exact after the abort.
     if (!now.busy || (held_is_rest && now.held && (now.settled || identification().map_minor < kMapMinorOfRest)))
       return;
     if (waited > limit) throw TimeoutError("stop on the path", waited);

@@ -16,7 +16,7 @@ namespace trammel::driver {
 namespace map = card_map;
 
 inline constexpr unsigned kHalfwordBits = 16;
-inline constexpr std::size_t kCountBegin = 2;  // halfword; before it axis mask and opcode, number and length in words
+inline constexpr std::size_t kCountBegin = 2;  // halfword; after mask, opcode, number and length in words
 inline constexpr std::size_t kCountHalfwords = 3;
 inline constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;
 // Bits of the field `plane`.
@@ -29,8 +29,8 @@ inline constexpr unsigned kAxisMask = 7;
 inline constexpr unsigned kTickShift = 8;
 inline constexpr unsigned kShiftMask = 31;
 
-// The layouts of the commands that this driver knows, and their fields, from the card map at compile time: a name that
-// is not there does not compile.
+// The layouts of the commands that this driver knows, and their fields, from the card map at compile time. An unknown
+// name is a compile error.
 constexpr const map::Command& layout_for(map::Opcode opcode) {
   return *map::find_command(static_cast<std::uint8_t>(opcode));
 }

@@ -9,13 +9,13 @@
 namespace trammel::driver {
 namespace {
 
-// What a command's words say, taken as they are.
+// Reads the fields of a command's words, without checks.
 class Reader {
  public:
   explicit Reader(const std::uint32_t* words) : words_(words) {}
 
   std::uint64_t count() const { return get(kCountBegin, kCountHalfwords); }
-  // Sign-extended from its halfwords.
+  // The field's value, sign-extended from its halfwords.
   template <const map::Field& kField>
   std::int64_t signed_field(std::size_t offset = 0) const {
     constexpr unsigned kUnused = 64 - kHalfwordBits * static_cast<unsigned>(kField.halfwords);
@@ -108,7 +108,8 @@ Command arc_chord_from(const Reader& from, std::uint8_t mask) {
   arc.first_y = from.signed_field<kFirstY>();
   arc.closing_x = from.signed_field<kClosingX>();
   arc.closing_y = from.signed_field<kClosingY>();
-  // Without two axes of a plane in the mask, which encode() refuses, the words do not hold so many increments.
+  // With fewer than two axes of a plane in the mask, which encode() refuses, the words do not contain this many
+  // increments.
   const unsigned plane = 1U << arc.axis_x | 1U << arc.axis_y;
   if (arc.axis_x != arc.axis_y && (mask & plane) == plane) arc.increment = from.increments<kFurther>(mask & ~plane);
   return arc;
@@ -201,7 +202,8 @@ DecodedCommand decode(const std::uint32_t* words, std::size_t count) {
     refuse(*layout, fmt::format("length {} words, {} given, where {} belong", given, count, length));
   }
   DecodedCommand decoded{command_from(layout->opcode, mask, Reader(words)), number};
-  // Whatever encode() would not have made is refused: ranges by itself, mask, padding and sign bits by the comparison.
+  // Refuses all words that encode() cannot produce: encode() checks ranges, the comparison checks mask, padding and
+  // sign bits.
   std::array<std::uint32_t, kMaxCommandWords> again{};
   if (encode(decoded.command, number, again.data()) != count || !std::equal(words, words + count, again.begin())) {
     refuse(*layout, "its mask, its padding or the upper bits of a field are not as its values ask for");

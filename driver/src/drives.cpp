@@ -27,7 +27,7 @@ void require_enables(const Identification& card, const char* what) {
   }
 }
 
-// Units of `clocks`, rounded up.
+// The time in units of `clocks` clocks, rounded up.
 std::uint32_t units(std::chrono::nanoseconds time, std::uint64_t clocks, std::uint32_t clock_hz, const char* what) {
   const std::uint64_t whole = clocks_of(time, clock_hz, what);
   const std::uint64_t result = whole / clocks + (whole % clocks != 0 ? 1 : 0);
@@ -62,7 +62,7 @@ void Card::set_output_roles(const OutputRoles& roles) {
   parts_->registers.write(reg::kHealthRoles, halves(roles.charge_pump, roles.healthy), "roles of outputs");
 }
 
-// The axes come last: a path that waits meanwhile finds all of the sequence.
+// The axes are written last, so that a path that waits meanwhile finds the complete sequence.
 void Card::set_enable_sequence(const EnableSequence& sequence) {
   require_enables(identification(), "enable");
   const unsigned axes = identification().axes;

@@ -24,7 +24,7 @@ template <const map::Field& kField, class Value>
                              kField.bits, count));
 }
 
-// Sets halfwords of words that were 0 before. One Writer a command.
+// Sets halfwords of words that were 0 before. One Writer per command.
 class Writer {
  public:
   Writer(const map::Command& layout, std::uint8_t mask, std::uint64_t count, std::uint8_t number, std::uint32_t* words)
@@ -38,15 +38,14 @@ class Writer {
     put(kCountBegin, kCountHalfwords, count);
   }
 
-  // A field with 64 bits or fewer; `offset`: halfwords beyond the field's own place.
+  // Writes a field of at most 64 bits. `offset`: halfwords after the field's own position.
   template <const map::Field& kField>
   void field(std::uint64_t value, std::size_t offset = 0) {
     static_assert(kField.kind == map::FieldKind::Unsigned && kField.bits <= 64);
     constexpr std::uint64_t kBits =
         kField.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (kField.bits % 64)) - 1;
     constexpr std::uint64_t kMax = kField.limit != 0 ? kField.limit : kBits;
-    constexpr std::uint64_t kMask =
-        kField.mask | kField.optional;  // whether the card has the engine is the stream's question
+    constexpr std::uint64_t kMask = kField.mask | kField.optional;  // the stream checks the card's engines
     const bool bits_good = kField.mask == 0 || (value & ~kMask) == 0;
     if (value < kField.minimum || value > kMax || !bits_good || (kField.at_most_count && value > count_)) {
       refuse_field<kField>(layout_, value, count_);
@@ -73,7 +72,7 @@ class Writer {
     put(kPayloadBegin + kField.offset + 4, kField.halfwords - 4, static_cast<std::uint64_t>(value.high()));
   }
 
-  // The field for each axis of `mask`; the others have none.
+  // Writes the field for each axis of `mask`; other axes have none.
   template <const map::Field& kField>
   void increments(const std::array<std::int64_t, map::kMaxAxes>& increment, std::uint8_t mask) {
     std::size_t offset = 0;
@@ -91,7 +90,7 @@ class Writer {
   std::size_t length() const { return length_; }
 
  private:
-  // Lowest halfword first, at the even halfword in a word's lower half.
+  // Writes the lowest halfword first; an even halfword is in the lower half of its word.
   void put(std::size_t at, std::size_t halfwords, std::uint64_t value) {
     for (std::size_t i = at; i < at + halfwords; ++i, value >>= kHalfwordBits) {
       words_[i / 2] |= static_cast<std::uint32_t>(value & 0xFFFF) << (i % 2 != 0 ? kHalfwordBits : 0);
@@ -111,7 +110,7 @@ std::size_t write(const LineCommand& line, std::uint8_t number, std::uint32_t* w
   return to.length();
 }
 
-// Of the axes that span a plane; refuses others.
+// The mask of the axes of a plane; refuses axes that span no plane.
 std::uint8_t plane_mask(const map::Command& layout, unsigned axis_x, unsigned axis_y) {
   if (axis_x > kAxisMask || axis_y > kAxisMask || axis_x == axis_y) {
     refuse(layout, fmt::format("plane of axes {} and {}", axis_x, axis_y));

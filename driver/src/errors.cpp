@@ -50,7 +50,7 @@ std::string name_of_axis(unsigned axis, const std::vector<std::string>& names) {
   return axis < names.size() ? names[axis] : fmt::format("axis {}", axis);
 }
 
-// More than the name says: "axis 0 plus, axis 2 minus".
+// Details beyond the fault's name: "axis 0 plus, axis 2 minus".
 std::string detail_of(std::optional<std::uint32_t> read, std::uint32_t fault, const std::vector<std::string>& axes) {
   namespace field = card_map::field;
   const std::uint32_t limit_state = read.value_or(0);

@@ -12,9 +12,9 @@ namespace trammel::driver {
 namespace {
 
 constexpr double kRampUpdate = card_map::constant::kUpdateClocks;
-// The card goes on at a piece's last rate for so many clocks after its last tick (the planner's kSwapClocks).
+// Clocks for which the card continues at a piece's last rate after its last tick (the planner's kSwapClocks).
 constexpr double kRampSwap = 6;
-constexpr double kLeastRampRate = 0x1p-32;  // one unit of the floor's field
+constexpr double kLeastRampRate = 0x1p-32;  // one unit of the field `floor`
 
 double checked_rate(const char* name, double speed, std::uint32_t clock_hz) {
   if (!(speed >= 0 && speed <= clock_hz)) {
@@ -23,8 +23,8 @@ double checked_rate(const char* name, double speed, std::uint32_t clock_hz) {
   return speed / clock_hz;
 }
 
-// Half of the slew's time from the full ratio at the highest rate: the way of a ramp to rest. At least a tick, since 0
-// says that the piece ends at rest.
+// The length of a ramp to rest: half of the slew time at the highest rate. At least one tick, because 0 means that the
+// piece ends at rest.
 std::uint32_t stop_distance(const FeedRamp& ramp, double highest_rate, std::uint32_t clock_hz) {
   if (ramp.end_speed == 0) return 0;
   const double clocks = std::chrono::duration<double>(ramp.slew_time).count() * clock_hz / 2;
@@ -51,7 +51,8 @@ FeedCommand feed_for_ramp(const FeedRamp& ramp, std::uint32_t clock_hz) {
   const double acceleration = (end_rate - rate) * (end_rate + rate) / (2 * ticks);
   const double clocks = 2 * ticks / (rate + end_rate);
 
-  // The first ticks pass at the speed before. Then the card holds each rate for an update: its mean.
+  // The first ticks pass at the previous speed. Then the card holds each rate for an update; the value used is the mean
+  // of the update.
   const double lead = std::min(ticks, kRampSwap * rate);
   const bool one_rate = clocks < kRampUpdate;
   const double behind = std::sqrt(std::max(0.0, rate * rate + 2 * acceleration * lead));
@@ -60,7 +61,7 @@ FeedCommand feed_for_ramp(const FeedRamp& ramp, std::uint32_t clock_hz) {
   piece.ticks = ramp.ticks;
   piece.rate = static_cast<std::uint64_t>(std::clamp(first, kLeastRampRate, 1 - 0x1p-53) * 0x1p64);
   piece.acceleration = one_rate ? 0 : static_cast<std::int64_t>(kRampUpdate * acceleration * 0x1p64);
-  // By v^2 = 2 a s a ramp to rest comes to sqrt(a) half a tick before it, and keeps that.
+  // By v^2 = 2 a s, a ramp to rest reaches sqrt(a) half a tick before rest; it keeps that rate to the end.
   const double slowest = std::max(end_rate, std::min(rate, std::sqrt(std::abs(acceleration))));
   const double floor = std::min(first, acceleration < 0 ? slowest : rate);
   piece.floor = static_cast<std::uint32_t>(std::clamp(floor, kLeastRampRate, 0.5) * 0x1p32);

@@ -9,20 +9,20 @@
 namespace trammel::driver {
 namespace {
 
-constexpr double kRateUnit = 1.0 / 18446744073709551616.0;  // 2^-64 ticks a clock
-constexpr double kFloorUnit = 1.0 / 4294967296.0;           // 2^-32
+constexpr double kRateUnit = 1.0 / 18446744073709551616.0;  // 2^-64 ticks per clock
+constexpr double kFloorUnit = 1.0 / 4294967296.0;           // 2^-32 ticks per clock
 constexpr double kUpdate = card_map::constant::kUpdateClocks;
 
-// Rate over time without the floor: start + slope t + bend t^2 / 2, ticks a clock.
+// Rate over time without the floor: start + slope t + bend t^2 / 2, ticks per clock.
 struct Course {
   double start;
   double slope;
   double bend;
   double floor;
 
-  // Ticks after t clocks.
+  // Number of ticks after t clocks.
   double ticks(double t) const {
-    // Where the rate crosses the floor.
+    // Times at which the rate crosses the floor.
     std::array<double, 4> cuts{0, t, t, t};
     const double above = start - floor;
     const double discriminant = slope * slope - 2 * bend * above;
@@ -52,12 +52,12 @@ double by_bisection(const Course& course, double ticks) {
   return most;
 }
 
-// With a constant slope.
+// The duration for a constant slope.
 double by_root(const Course& course, double ticks) {
   const double start = std::max(course.start, course.floor);
   const double square = start * start + 2 * course.slope * ticks;
   if (square >= course.floor * course.floor) return 2 * ticks / (start + std::sqrt(square));
-  // Down to the floor, and on at it.
+  // Falls to the floor, and continues at the floor.
   const double falling = (start * start - course.floor * course.floor) / (-2 * course.slope);
   return 2 * falling / (start + course.floor) + (ticks - falling) / course.floor;
 }
@@ -75,20 +75,20 @@ double feed_clocks(const FeedCommand& piece) {
 std::optional<double> ticks_to_reversal(const FeedCommand& piece) {
   constexpr double kSlack = 2;  // ticks
   constexpr double kFits = 0.999;
-  constexpr double kFloorUpdates = 4;  // and what the floor gives meanwhile
+  constexpr double kFloorUpdates = 4;  // plus the ticks that the floor gives in that time
   const double rate = static_cast<double>(piece.rate) * kRateUnit;
   const double gain = static_cast<double>(piece.acceleration) * kRateUnit;
   const double jerk = static_cast<double>(piece.jerk) * kRateUnit;
-  // In update k the rate is rate + k gain + k (k - 1) / 2 jerk; the first k > 0 at which that is 0.
+  // In update k the rate is rate + k gain + k (k - 1) / 2 jerk. Finds the first k > 0 at which it is 0.
   const double linear = gain - jerk / 2;
   const double discriminant = linear * linear - 2 * jerk * rate;
   if (discriminant < 0) return std::nullopt;
   const double divisor = -linear + std::sqrt(discriminant);
-  // The smaller positive root of rate + linear k + jerk k^2 / 2, without a difference of equals.
+  // The smaller positive root of rate + linear k + jerk k^2 / 2, in a form without cancellation.
   if (!(divisor > 0)) return std::nullopt;
   const double updates = 2 * rate / divisor;
   const double ticks = kUpdate * updates * (rate + (updates - 1) / 2 * gain + (updates - 1) * (updates - 2) / 6 * jerk);
-  const double last = kUpdate * std::abs(gain + updates * jerk);  // an update's change, over an update
+  const double last = kUpdate * std::abs(gain + updates * jerk);  // ticks by one update's change of the rate
   const double short_by = static_cast<double>(piece.ticks) * kFits - ticks;
   const double at_floor = kFloorUpdates * kUpdate * piece.floor * kFloorUnit;
   if (short_by <= kSlack + last + at_floor) return std::nullopt;

@@ -21,7 +21,7 @@ using frames::Result;
 
 std::uint16_t next(std::uint16_t number) { return static_cast<std::uint16_t>(number + 1); }
 
-// How many accesses from the first on go as one request: all reads or all writes, at rising addresses or at one.
+// Number of accesses, from the first, that fit in one request: all reads or all writes, at rising addresses or at one.
 std::size_t run_length(const Access* accesses, std::size_t count, bool fixed) {
   const std::size_t most = std::min(count, frames::kMaxWords);
   std::size_t length = 1;
@@ -32,8 +32,8 @@ std::size_t run_length(const Access* accesses, std::size_t count, bool fixed) {
   return length;
 }
 
-// Whether the reply is one to this very request. Requests that run and others have numbers of their own that may meet,
-// but only what runs has accesses to tell of.
+// Whether the reply answers this request. Requests that run and other requests have separate numbers, which may
+// coincide; but only a request that runs reports accesses.
 bool answers(const Reply& reply, const Request& request) {
   if (reply.number != request.number) return false;
   const bool runs = request.kind == Kind::Read || request.kind == Kind::Write;
@@ -42,7 +42,7 @@ bool answers(const Reply& reply, const Request& request) {
   return !ran || (reply.has_data == (request.kind == Kind::Read) && reply.epoch == request.epoch);
 }
 
-// What an impatient bus allows for an answer once there was none.
+// Time for an answer when a bus with limited patience got no answer before.
 constexpr std::chrono::milliseconds kLastAsk(500);
 
 constexpr const char* kUnknown =
@@ -59,7 +59,7 @@ FrameBus::FrameBus(ByteLink& link, const Options& options) : link_(link), option
   options_ = options;
 }
 
-// Impatient, a request is sent once, and once again on a new connection.
+// With limited patience a request is sent once, and once more on a new connection.
 FrameBus::Tries FrameBus::tries() const {
   if (!is_impatient()) return {options_.answer, options_.sends, options_.restarts};
   return {lost_ ? kLastAsk : patience_, 1, 1};
@@ -98,10 +98,10 @@ Request FrameBus::request_for(const Access* accesses, std::size_t count) const {
   return request;
 }
 
-// Sends until the reply says what became of the request. The number makes it run once: a card that has run it only
-// replies again, and one that has not takes it after a new connection as before.
+// Sends until a reply tells whether the request ran. The number makes it run only once: a card that has run it only
+// repeats its reply; a card that has not still accepts it after a new connection.
 Reply FrameBus::exchange(Request request) {
-  // A number comes again after 65,536 requests: by then nothing of this connection may be on its way.
+  // Numbers repeat after 65,536 requests; by then nothing of this connection may still be in transit.
   if (open_ || next(number_) == 0) {
     open_.reset();
     begin_anew();
@@ -132,7 +132,7 @@ Reply FrameBus::exchange(Request request) {
   }
 }
 
-// After a request without an answer, sent at `begun`.
+// Connects again after a request without an answer, which was sent at `begun`.
 void FrameBus::connect_again(std::chrono::nanoseconds begun) {
   const Tries before = tries_;
   if (is_impatient()) tries_ = {kLastAsk, 1, 0};
@@ -147,7 +147,7 @@ void FrameBus::connect_again(std::chrono::nanoseconds begun) {
   tries_ = {before.answer, before.sends, before.restarts};
 }
 
-// A link that is gone is one without an answer: what comes next is a new connection.
+// A lost link counts as no answer: the next step is a new connection.
 std::optional<Reply> FrameBus::try_open() {
   try {
     return send_and_wait(*open_);
@@ -156,7 +156,7 @@ std::optional<Reply> FrameBus::try_open() {
   }
 }
 
-// The card stands where it can stand after the open request: it has run it, or not yet.
+// Whether the card is in a state that is possible after the open request: it has run it, or not yet.
 bool FrameBus::known() const { return !went_back_ && (card_last_ == number_ || card_last_ == next(number_)); }
 
 std::size_t FrameBus::resume() {
@@ -168,7 +168,7 @@ std::size_t FrameBus::resume() {
     open_.reset();
     return made_;
   }
-  // It ran: its reply, which the card keeps, says how far.
+  // The request ran. The card has stored its reply, which tells how many accesses were made.
   open_->epoch = epoch_;
   const std::optional<Reply> reply = send_and_wait(*open_);
   if (!reply) throw LinkError("the card connects, but does not answer");
@@ -178,7 +178,7 @@ std::size_t FrameBus::resume() {
 }
 
 std::optional<Reply> FrameBus::send_and_wait(const Request& request) {
-  // The first end closes whatever the card has taken for a frame's beginning.
+  // The first kEnd ends any bytes that the card has taken as the start of a frame.
   Bytes bytes{frames::kEnd};
   frames::append_request(bytes, request);
   for (unsigned send = 0; send < tries_.sends; ++send) {
@@ -187,7 +187,7 @@ std::optional<Reply> FrameBus::send_and_wait(const Request& request) {
     std::optional<Reply> reply = wait_for(request, bytes.size());
     if (!reply) continue;
     state_ = reply->state;
-    // Anything else than its execution: the connection is no longer the one that this side has in mind.
+    // Any other result than its execution means that the connection is no longer the one that this side assumes.
     const bool executed = reply->result == Result::Done || reply->result == Result::Refused;
     if (!executed) return std::nullopt;
     return reply;
@@ -200,7 +200,7 @@ std::optional<Reply> FrameBus::wait_for(const Request& request, std::size_t byte
   const auto until = link_.now() + link_.time_of(bytes) + link_.time_of(back) + tries_.answer;
   const auto begun = link_.now();
   std::uint8_t buffer[256];
-  // Bytes behind the end of this reply belong to nothing that is waited for.
+  // Bytes after the end of this reply answer no pending request.
   for (auto left = until - begun; left.count() > 0; left = until - link_.now()) {
     const std::size_t count =
         link_.receive(buffer, sizeof(buffer), std::min<std::chrono::nanoseconds>(left, kInterruptSlice));
@@ -217,13 +217,13 @@ std::optional<Reply> FrameBus::wait_for(const Request& request, std::size_t byte
   return std::nullopt;
 }
 
-// A new epoch, so that nothing sent before can run any more.
+// Starts a new epoch, so that requests sent before can no longer run.
 bool FrameBus::connect() {
   Request ask;
   ask.number = ++tag_;
   const std::optional<Reply> card = send_and_wait(ask);
   if (!card) return false;
-  // An epoch only moves on; one that went back is that of a card that was reset.
+  // An epoch only increases; a decreased one shows that the card was reset.
   if (static_cast<std::uint16_t>(card->epoch - epoch_) >= 0x8000) went_back_ = true;
   Request request;
   request.kind = Kind::Connect;

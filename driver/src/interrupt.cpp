@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Of a thread.
+// State of a thread.
 struct Interrupts {
   InterruptScope* innermost = nullptr;
   steady_clock::time_point next_look{};
@@ -23,7 +23,8 @@ Interrupts& of_this_thread() {
 
 InterruptScope::InterruptScope(std::function<bool()> asked)
     : asked_(std::move(asked)), outer_(of_this_thread().innermost) {
-  // One within another, made anew in each look of a wait, does not put the looks off.
+  // A nested scope does not postpone the next check; otherwise a scope created in each poll of a wait would prevent
+  // checks.
   if (outer_ == nullptr) of_this_thread().next_look = steady_clock::now() + kInterruptSlice;
   of_this_thread().innermost = this;
 }

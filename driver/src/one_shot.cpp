@@ -49,7 +49,7 @@ void check_displacement(const CardTiming& card, const Displacement& displacement
   }
 }
 
-// The fewest clocks in which the axis makes its pulses. Bound: 2^62 pulses * 2^32 Hz, 94 bits.
+// Smallest number of clocks in which the axis makes its pulses. Bound: 2^62 pulses * 2^32 Hz, 94 bits.
 Uint128 fewest_clocks(const CardTiming& card, std::size_t axis, std::uint64_t pulses, std::uint64_t max_velocity) {
   const Uint128 of_card = Uint128::product(pulses, std::max<std::uint32_t>(card.pulse_period[axis], 1));
   if (max_velocity == 0) {
@@ -58,7 +58,7 @@ Uint128 fewest_clocks(const CardTiming& card, std::size_t axis, std::uint64_t pu
   return std::max(of_card, ceil_div(Uint128::product(pulses, card.clock_hz), max_velocity));
 }
 
-// N for the whole line: `clocks`, or more where a limit asks for it and the policy allows it.
+// N for the whole line: `clocks`, or more if a limit requires it and the policy allows it.
 Uint128 limited_clocks(const CardTiming& card, const Displacement& displacement, std::uint64_t clocks,
                        const LineLimits& limits) {
   Uint128 result = clocks;
@@ -81,7 +81,7 @@ std::uint64_t pulses_before(std::uint64_t pulses, std::size_t index, std::size_t
   return ((Uint128::product(pulses, index) + parts / 2) / parts).low();
 }
 
-// 256 bits.
+// A product of 256 bits.
 struct Product {
   Uint128 high;
   Uint128 low;
@@ -103,7 +103,7 @@ bool less(const Product& a, const Product& b) { return a.high != b.high ? a.high
 // 2^128.
 Uint128 ceil_root(Uint128 square, std::uint64_t factor) {
   const Product target = multiply(square, Uint128::product(factor, factor));
-  Uint128 below;  // below^2 < target, once anything is set
+  Uint128 below;  // below^2 < target, once a bit is set
   for (unsigned bit = 128; bit-- > 0;) {
     const Uint128 candidate = below + (Uint128(1) << bit);
     if (less(multiply(candidate, candidate), target)) {
@@ -117,22 +117,23 @@ std::uint64_t speed_clocks(const CardTiming& card, const Displacement& displacem
   if (speed.pulses == 0 || speed.seconds == 0) {
     throw ArgumentError(fmt::format("line: a speed of {} pulses in {} s", speed.pulses, speed.seconds));
   }
-  Uint128 square;  // of the path's length; 8 * 2^124 at most
+  Uint128 square;  // square of the path's length; at most 8 * 2^124
   for (const std::int64_t pulses : displacement) {
     square = square + Uint128::product(magnitude(pulses), magnitude(pulses));
   }
-  // The fewest whole N with N * speed >= length * f: the root may be rounded up first, as N * pulses is whole.
+  // The smallest integer N with N * speed >= length * f. The root may be rounded up first, because N * pulses is an
+  // integer.
   const Uint128 scaled = ceil_root(square, std::uint64_t{card.clock_hz} * speed.seconds);
   const Uint128 clocks = ceil_div(scaled, speed.pulses);
-  return std::min<Uint128>(clocks, kMaxClocks + 1).low();  // too long is refused later
+  return std::min<Uint128>(clocks, kMaxClocks + 1).low();  // a longer line is refused later
 }
 
 bool has_direct_mode(const Card& card) {
   return card_map::has_engine(card.identification().engines, card_map::engine::kDirectMode);
 }
 
-// One write for each register of the card's axes, LENGTH and START: the slots run downwards, so that those of the
-// card's axes lie just before LENGTH and START.
+// One write per register of the card's axes, LENGTH and START. The slots are in descending order, so those of the
+// card's axes are directly before LENGTH and START.
 void start_direct(Card& card, const OneShotPart& part) {
   const auto words = part.words();
   const unsigned axes = card.identification().axes;
@@ -145,7 +146,7 @@ void start_direct(Card& card, const OneShotPart& part) {
   card.parts().registers.transfer(accesses.data(), words.size() - absent, "line");
 }
 
-// Without direct mode: the same increments on feed ticks, one a clock but for 2^-64 of a clock.
+// Without direct mode: the same increments on feed ticks, one per clock except for 2^-64 of a tick.
 void start_streamed(Card& card, const OneShotPart& part) {
   Stream stream(card);
   FeedCommand feed;
@@ -164,7 +165,7 @@ void start_streamed(Card& card, const OneShotPart& part) {
   stream.flush();
 }
 
-// The card is idle: it is the same one still, and was not reset since the start.
+// Checks, when the card is idle, that it is still the same card and was not reset since the start.
 void check_made(Card& card, const OneShotPart& part) {
   check_identity(card.parts());
   if (!has_direct_mode(card)) {
@@ -177,7 +178,7 @@ void check_made(Card& card, const OneShotPart& part) {
   }
 }
 
-// Nothing would move, and no call that waits would end.
+// Otherwise nothing would move, and no waiting call would end.
 void require_moving(Card& card) {
   card.parts().time_base.throw_if_held("line");
   if (card.parts().registers.read(card_map::reg::kRatioFeed) == 0) {
@@ -221,7 +222,7 @@ OneShotPart OneShotPlan::part(std::size_t index) const {
     const std::uint64_t count = pulses_before(pulses, index + 1, parts_) - pulses_before(pulses, index, parts_);
     part.count[axis] = static_cast<std::uint32_t>(count);
     part.frequency[axis] = rounded_share(count, part_clocks_);
-    // An axis of the line without a pulse in this part takes part all the same: no part has an empty mask.
+    // An axis of the line takes part even if it has no pulse in this part, so that no part has an empty mask.
     part.mask = static_cast<std::uint8_t>(part.mask | (pulses != 0 ? 1U : 0U) << axis);
     part.negative = static_cast<std::uint8_t>(part.negative | (displacement_[axis] < 0 ? 1U : 0U) << axis);
   }
@@ -238,7 +239,7 @@ OneShotPlan plan_line_clocks(const CardTiming& card, const Displacement& displac
   if (total > kMaxClocks) {
     throw ArgumentError(fmt::format("line: it would take 2^62 clocks at {} Hz or more", card.clock_hz));
   }
-  // A part has ceil(|p| / parts) pulses at most and a whole share of the clocks, so never more pulses than clocks.
+  // A part has at most ceil(|p| / parts) pulses and a full share of the clocks, so never more pulses than clocks.
   const Uint128 parts = std::max(ceil_div(total, kMaxLength), ceil_div(longest(displacement), kMaxCount));
   OneShotPlan plan;
   plan.displacement_ = displacement;

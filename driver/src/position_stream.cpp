@@ -25,24 +25,25 @@ namespace field = card_map::field;
 constexpr std::uint64_t kLongestPeriod = std::uint64_t{1} << 32;  // clocks
 constexpr std::int64_t kFarthest = (std::int64_t{1} << 30) * PositionStream::kPulse;
 constexpr unsigned kMaxStalePeriods = field::kStreamingStalePeriods >> field::kStreamingStalePeriodsShift;
-// A tick every kClocksPerTick clocks, exactly: 2^-64 ticks a clock.
+// Exactly one tick per kClocksPerTick clocks: 2^-64 ticks per clock.
 constexpr std::uint64_t kStreamRate = ~std::uint64_t{0} / PositionStream::kClocksPerTick + 1;
 
-// Behind a line the card is looked at when it has surely taken it up: its clocks from the commit to STATUS, at no less
-// than so many clocks a read (docs/reference/behaviour.md, Accesses).
+// After a line, the card is polled when it has certainly taken the line: the card's clocks from the commit to STATUS,
+// spent in reads of at least this many clocks each (docs/reference/behaviour.md, Accesses).
 constexpr unsigned kTakenUpClocks = 12;
 constexpr unsigned kReadClocks = 5;
-// STATUS and GEOMETRY_BEGUN are read on both sides of STALE_TICKS, so often until all are of one state.
+// STATUS and GEOMETRY_BEGUN are read before and after STALE_TICKS, at most this many times, until all belong to one
+// state.
 constexpr int kLooks = 4;
 
-// Nearest whole pulse, a half upwards: the same wherever the origin lies.
+// Nearest whole pulse, half up: the same for every position of the origin.
 std::int64_t whole_pulses(std::int64_t position) {
   const std::int64_t raised = position + PositionStream::kPulse / 2;
   return raised >= 0 ? raised / PositionStream::kPulse
                      : -((-raised + PositionStream::kPulse - 1) / PositionStream::kPulse);
 }
 
-// Of an axis after so many ticks of a line, from its start: docs/reference/behaviour.md, Lines.
+// Pulses of an axis after `ticks` ticks of a line: docs/reference/behaviour.md, Lines.
 std::int64_t pulses_after(std::int64_t increment, std::uint64_t ticks) {
   constexpr unsigned kFraction = map::constant::kFractionBits;
   const Int128 way = Int128(static_cast<std::int64_t>(ticks)) * Int128(increment);
@@ -50,7 +51,7 @@ std::int64_t pulses_after(std::int64_t increment, std::uint64_t ticks) {
   return static_cast<std::int64_t>((phase.bits() >> kFraction).low());
 }
 
-// Nearest to value * part / whole, 0 <= part <= whole < 2^40.
+// Rounds value * part / whole, 0 <= part <= whole < 2^40.
 std::int64_t share(std::int64_t value, std::uint64_t part, std::uint64_t whole) {
   if (whole == 0) return 0;
   const double exact = static_cast<double>(value) * (static_cast<double>(part) / static_cast<double>(whole));
@@ -59,7 +60,7 @@ std::int64_t share(std::int64_t value, std::uint64_t part, std::uint64_t whole) 
 
 }  // namespace
 
-// After an error of the link or the card it is not known what the card has.
+// After an error of the link or the card, the contents of the card are unknown.
 template <class Call>
 auto PositionStream::closing_at_errors(Call call) {
   try {
@@ -103,7 +104,7 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
   start();
 }
 
-// Everything from the beginning, where the axes stand.
+// Restarts everything at the present position of the axes.
 void PositionStream::start() {
   card_->abort();
   card_->clear_refusal();
@@ -132,7 +133,7 @@ PositionStream::Sent PositionStream::send(const Positions& targets, std::chrono:
           kLongestPeriod / hz * kNanosecondsPerSecond + kLongestPeriod % hz * kNanosecondsPerSecond / hz) {
     throw ArgumentError(fmt::format("position stream: a period of {} ns", duration.count()));
   }
-  // Whole seconds apart, so that 64 bits hold it.
+  // Whole seconds are converted separately, so that 64 bits suffice.
   const auto time = static_cast<std::uint64_t>(duration.count());
   const std::uint64_t parts = time % kNanosecondsPerSecond * hz + odd_time_;
   const Sent sent = send(targets, time / kNanosecondsPerSecond * hz + parts / kNanosecondsPerSecond);
@@ -162,7 +163,7 @@ PositionStream::Sent PositionStream::send(const Positions& targets, std::uint64_
   });
 }
 
-// For a line, as of the last look, or as of now where that is too little.
+// Requires room for a line, as of the last poll, or of a new one if that is not enough.
 void PositionStream::require_room() {
   const std::uint32_t need = map::queue_halfwords(layout_of(LineCommand{}), line_mask());
   if (need > geometry_room_) geometry_room_ = card_->parts().registers.read(reg::kGeometryRoom);
@@ -171,7 +172,7 @@ void PositionStream::require_room() {
   }
 }
 
-// The line to there, shorter by what the card is behind, where that is not too fast.
+// The line to the target, shortened by the card's excess time unless that makes it too fast.
 PositionStream::Step PositionStream::step_to(const Pulses& told, std::uint64_t ticks) const {
   const std::uint64_t most = std::min(behind_, ticks / 2);
   Step step = step_to(told, ticks, most);
@@ -212,7 +213,7 @@ std::optional<unsigned> PositionStream::fastest_axis(const Line& line) const {
   for (unsigned n = 0; n < axes_; ++n) {
     const auto pulses = static_cast<std::uint64_t>(std::abs(line.pulses[n]));
     if (pulses > line.ticks || pulses * least_clocks_[n] > clocks) return n;
-    // A pulse more or less is the rounding's.
+    // Rounding may add or remove a pulse.
     const double seconds = static_cast<double>(clocks) / card_->identification().clock_hz;
     const double most = options_.max_speed[n] * seconds + 1;
     if (options_.max_speed[n] != 0 && static_cast<double>(pulses) > most) return n;
@@ -238,7 +239,7 @@ PositionStream::Sent PositionStream::send_line(const Step& step) {
   longest_ticks_ = std::max(longest_ticks_, line.ticks);
   Sent sent;
   sent.ahead = lines_ - look.begun;
-  // Where this line has not begun, the one before it has not come to its end, and this one will be there then.
+  // If this line has not begun, the previous one has not ended, and this line is in time.
   if (pending_ && sent.ahead == 0) sent.stale_ticks = look.stale_ticks;
   gone_beyond(sent.stale_ticks);
   last_ = line;
@@ -246,7 +247,7 @@ PositionStream::Sent PositionStream::send_line(const Step& step) {
   return sent;
 }
 
-// The last line went on for so long.
+// Accounts for the last line's continuation by `ticks`.
 void PositionStream::gone_beyond(std::uint64_t ticks) {
   behind_ += ticks;
   all_stale_ticks_ += ticks;
@@ -258,7 +259,7 @@ void PositionStream::gone_beyond(std::uint64_t ticks) {
 
 void PositionStream::put_feed() {
   FeedCommand feed;
-  feed.ticks = 1;  // it goes on as long as lines take ticks
+  feed.ticks = 1;  // the piece continues as long as lines take ticks
   feed.rate = kStreamRate;
   put(feed);
   fed_ = true;
@@ -270,7 +271,7 @@ void PositionStream::put(const Command& command) {
   for (std::size_t i = 0; i < count; ++i) accesses_[used_++] = write_of(reg::kStream, words[i]);
 }
 
-// Makes the accesses that were put, and looks at the card until what it shows is of one state.
+// Makes the prepared accesses, and polls the card until the values read belong to one state.
 PositionStream::Look PositionStream::transfer_and_look() {
   for (int looks = 0; looks < kLooks; ++looks) {
     const std::size_t first = used_;
@@ -299,10 +300,10 @@ PositionStream::Look PositionStream::transfer_and_look() {
                   lines_));
 }
 
-// The card counts lines that this stream has not sent, or has gone back.
+// The card counts lines that this stream has not sent, or its count has decreased.
 void PositionStream::throw_not_ours(std::uint32_t begun) {
   check_identity(card_->parts());
-  // A fault since STATUS was read has set them back.
+  // A fault after the read of STATUS may have reset the counts.
   card_->parts().registers.throw_if_faulted(card_->read_status(), "position stream");
   throw StateError(
       fmt::format("position stream: the card says that it has begun {} lines, where {} were sent and {} had begun: it "
@@ -349,7 +350,7 @@ PositionStream::Positions PositionStream::position() const {
   return result;
 }
 
-// A position of the stream as the card counts it.
+// Converts a position of the stream to POSITION of the card.
 std::int32_t PositionStream::at_card(unsigned axis, std::int64_t pulses) const {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(origin_[axis]) + static_cast<std::uint32_t>(pulses));
 }

@@ -21,8 +21,8 @@ inline std::uint32_t field_bits(std::uint32_t value, std::uint32_t mask, std::ui
   return (value & mask) >> shift;
 }
 
-// Throws ArgumentError, with `what` in front, unless the register takes the value: no bits without meaning, within the
-// limits of its field.
+// Throws ArgumentError, whose message starts with `what`, unless the register accepts the value: no undefined bits,
+// within the limits of its field.
 inline void check_setting(std::uint32_t address, std::uint64_t value, const std::string& what) {
   const card_map::Register& setting = register_at(address);
   const std::uint64_t max = setting.limited != 0 ? setting.maximum : setting.mask;
@@ -32,7 +32,7 @@ inline void check_setting(std::uint32_t address, std::uint64_t value, const std:
   }
 }
 
-// Throws IdentificationError unless a register of the identification reads what a card may have there.
+// Throws IdentificationError unless the value of an identification register is within the limits of this driver.
 inline void check_field(std::uint32_t address, std::uint32_t value, std::uint32_t min, std::uint32_t max,
                         const char* unit) {
   if (value >= min && value <= max) return;
@@ -47,7 +47,7 @@ inline void require_path_commands(std::uint32_t engines, std::string_view what) 
                                   card_map::kEngineNames[card_map::engine::kPathCommands], engines));
 }
 
-// The bits of STOP_REACTION in `mask`; the others stay. 1: on a ramp.
+// Sets the bits of STOP_REACTION in `mask`; the others stay. 1: stop on a ramp.
 inline void set_reactions(Registers& registers, std::uint32_t mask, std::uint32_t ramps, std::string_view what) {
   const std::uint32_t before = registers.read(card_map::reg::kStopReaction);
   registers.write(card_map::reg::kStopReaction, (before & ~mask) | ramps, what);

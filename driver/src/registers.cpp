@@ -35,7 +35,7 @@ void Registers::check_read(const Access& access) {
   }
 }
 
-// The bus's transfer, its result checked.
+// Makes a transfer, and checks its result.
 std::size_t Registers::try_transfer(Access* accesses, std::size_t count) {
   const std::size_t made = bus_->transfer(accesses, count);
   if (made > count || (made < count && !bus_->reports_refusals())) {
@@ -48,7 +48,7 @@ void Registers::transfer(Access* accesses, std::size_t count, std::string_view c
   const bool writes = std::any_of(accesses, accesses + count, [](const Access& access) { return access.write; });
   const bool confirm = writes && !bus_->reports_refusals();
   if (confirm) {
-    // What is latched already would hide what is refused now.
+    // A refusal that is already latched would hide a new one.
     keep_earlier_refusal();
   }
   confirmed_transfer(accesses, count, confirm, context);
@@ -74,7 +74,7 @@ void Registers::confirmed_transfer(Access* accesses, std::size_t count, bool con
   }
 }
 
-// REFUSAL as it stands in the card.
+// Reads REFUSAL from the card.
 std::optional<Refusal> Registers::latched_refusal() {
   Access access = read_of(reg::kRefusal);
   if (try_transfer(&access, 1) != 1) {
@@ -102,7 +102,7 @@ void Registers::keep_earlier_refusal() {
   forget_latched_refusal();
 }
 
-// An access that the bus says was refused.
+// Throws for an access that the bus reports as refused.
 void Registers::throw_refused_access(const Access& access, std::string_view context) {
   const std::optional<Refusal> latched = latched_refusal();
   if (latched && latched->address == access.address) {
@@ -117,7 +117,7 @@ void Registers::throw_refused_access(const Access& access, std::string_view cont
 }
 
 void Registers::throw_refused(const Refusal& refusal, std::string_view context) {
-  // One of the stream stays latched: the stream is closed until it is restarted.
+  // A refusal of the stream stays latched: the stream is closed until it is restarted.
   if (refusal.address != reg::kStream) {
     forget_latched_refusal();
   }
@@ -174,7 +174,7 @@ Status Registers::status_of(const Access& access) const {
 }
 
 void Registers::throw_fault(std::uint32_t faults, std::string_view context) {
-  // Only a card that has LIMIT_STATE sets these bits.
+  // Only a card with LIMIT_STATE sets these bits.
   constexpr std::uint32_t kNamed = field::kFaultLimit | field::kFaultDriveFault | field::kFaultSoftLimit;
   std::optional<std::uint32_t> state;
   if ((faults & kNamed) != 0) state = read(reg::kLimitState);

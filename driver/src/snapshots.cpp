@@ -18,7 +18,7 @@ namespace {
 
 using TwoWords = std::array<std::uint32_t, 2>;
 
-// Reads what every area has into a Snapshot or a Rest, and two words that are the area's own, which it gives back.
+// Reads the words that all areas share into a Snapshot or a Rest, and returns two words that are specific to the area.
 template <class State>
 TwoWords read_words(Registers& registers, unsigned axes, map::Area area, const TwoWords& own, State& state) {
   constexpr std::size_t kHead = 8;

@@ -20,12 +20,12 @@ namespace {
 namespace map = card_map;
 namespace reg = card_map::reg;
 
-// Words that are written at once at most.
+// Largest number of words written at once.
 constexpr std::size_t kKeptWords = 512;
 static_assert(kKeptWords >= kMaxCommandWords);
 constexpr std::size_t kShortestCommandWords = 3;
-constexpr std::size_t kShortestQueued = 4;  // halfwords of a barrier
-// Commands that have left the queue, but may not have begun yet, or not ended.
+constexpr std::size_t kShortestQueued = 4;  // halfwords; a barrier
+// Number of commands that have left the queue, but may not have begun or ended yet.
 constexpr std::size_t kBeyondQueue = 4;
 constexpr unsigned kMapMinorOfSilence = 2;  // silent pieces came with map 3.2
 
@@ -36,7 +36,7 @@ void require_engine(const Identification& card, std::uint32_t engine, std::strin
   }
 }
 
-// The card would creep to the piece's end at its floor.
+// Refused because the card would run to the piece's end at its floor.
 void refuse_reversal(const FeedCommand& feed, std::string_view command) {
   if (const auto ticks = ticks_to_reversal(feed)) {
     throw ArgumentError(fmt::format("stream: {}: acceleration and jerk would reverse the feed after {:.0f} of {} ticks",
@@ -53,8 +53,7 @@ class Stream::Wait {
     allow();
   }
 
-  // What was planned counts from now on: the piece or barrier that the card has begun last, and the one that it is
-  // about to begin.
+  // Restarts the planned time: that of the piece or barrier that began last, and of the one that is about to begin.
   void allow() {
     const Count& feed = stream_.feed_;
     PlannedTime planned;
@@ -67,10 +66,10 @@ class Stream::Wait {
     }
     budget_.allow(planned);
   }
-  // `wake`: as of WaitBudget::pause().
+  // `wake`: as for WaitBudget::pause().
   void pause(const Status& status, std::uint32_t wake) { budget_.pause(status, stream_.poll_clocks_, wake); }
 
-  // Throws StateError when the card has been idle at two looks in a row although it has not begun all.
+  // Throws StateError when the card was idle at two successive polls although it has not begun all commands.
   void idle(bool without_reason) {
     idle_looks_ = without_reason ? idle_looks_ + 1 : 0;
     if (idle_looks_ < 2) return;
@@ -87,7 +86,8 @@ class Stream::Wait {
   int idle_looks_ = 0;
 };
 
-// After a fault the card itself refuses what comes; after a time-out it may still get there.
+// The stream stays open after a fault, because the card itself then refuses commands, and after a time-out, because the
+// card may still finish.
 template <class Call>
 auto Stream::closing_at_errors(Call call) {
   try {
@@ -176,7 +176,7 @@ void Stream::send(const std::vector<Command>& commands) {
   flush();
 }
 
-// What of a command depends on the card; its layout was checked by encode().
+// Checks the properties that depend on the card; encode() has checked the ranges.
 Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) {
   const Identification& card = card_->identification();
   const map::Command& layout = layout_of(command);
@@ -205,7 +205,7 @@ Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) 
   return {layout.to_geometry ? halfwords : 0, layout.to_feed ? halfwords : 0};
 }
 
-// The card looks at inputs that it lacks as at a level of 0: a wait for one might never end.
+// Refuses inputs that the card lacks: they read 0, so a wait for one might never end.
 void Stream::check_input(const Command& command) {
   const auto* wait = std::get_if<WaitInputCommand>(&command);
   const auto* probe = std::get_if<ProbeCommand>(&command);
@@ -229,7 +229,7 @@ void Stream::keep(const Command& command, const Need& need, const std::uint32_t*
     Duration duration;
     if (const auto* feed = std::get_if<FeedCommand>(&command)) {
       duration.piece_class = feed->piece_class;
-      constexpr double kLongest = 4e18;  // of what 64 bits hold
+      constexpr double kLongest = 4e18;  // limit, so that 64 bits suffice
       duration.gated = static_cast<std::uint64_t>(std::min(feed_clocks(*feed), kLongest)) + 1;
     } else if (const auto* dwell = std::get_if<DwellCommand>(&command)) {
       duration.real = dwell->clocks;
@@ -262,7 +262,7 @@ void Stream::wait_for_room(const Need& need) {
   }
 }
 
-// For room where it is missing.
+// The wake condition: room in the queues that lack it.
 std::uint32_t Stream::wake_for(const Need& need) const {
   if (!card_->parts().interrupt.tells_of_room()) return 0;
   return card_->parts().interrupt.wake_at_room(need.geometry > room_.geometry ? need.geometry : 0,
@@ -290,7 +290,7 @@ Status Stream::finish() {
   flush();
   return closing_at_errors([this] {
     Wait wait(*this, "stream: waiting for the end");
-    // The first look comes after a pause too: a command is some clocks on its way from the port to the queue.
+    // The first poll also comes after a pause, because a command takes some clocks from the port to the queue.
     Status status;
     for (;;) {
       wait.pause(status, WaitBudget::kIdle);
@@ -318,7 +318,7 @@ void Stream::check_probing(const ProbeCommand& condition, const std::vector<Comm
   }
 }
 
-// Until the edge is there, or all is done without one.
+// Waits until the edge has come, or all is done without one.
 Status Stream::wait_for_probe() {
   Wait wait(*this, "probe: waiting for the edge or the end of the paths");
   Status status;
@@ -382,12 +382,12 @@ Status Stream::look(Wait& wait) {
   return status;
 }
 
-// The card counts in 32 bits, from 0 on since the stream was opened.
+// The card's counters have 32 bits, and start at 0 when the stream is opened.
 void Stream::advance(Count& count, std::uint32_t begun) const {
   const std::uint64_t now = count_after(count.begun, begun);
   if (now > count.sent) {
     check_identity(card_->parts());
-    // A fault since STATUS was read has set it back.
+    // A fault after the read of STATUS may have reset the counter.
     card_->parts().registers.throw_if_faulted(card_->read_status(), "stream");
     throw StateError(
         fmt::format("stream: the card says that it has begun {} commands of a queue, where {} were sent and "

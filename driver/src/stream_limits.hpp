@@ -1,5 +1,5 @@
-// The soft limits of a card as a position stream keeps them: a period is refused where the card, left alone behind it,
-// would no longer come to rest inside.
+// The soft limits of a card as a position stream enforces them: it refuses a period after which the card, without
+// further periods, would not come to rest inside the limits.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@ namespace trammel::driver {
 
 class StreamLimits {
  public:
-  // Pulses of one axis and clocks of a line, and where it ends, counted from `origin`.
+  // A line of one axis: its pulses and clocks, and its end position, counted from `origin`.
   struct Way {
     std::int64_t pulses = 0;
     std::uint64_t clocks = 1;
     std::int64_t end = 0;
   };
 
-  // Those of a card that has none hold for nothing. `origin`: POSITION where the stream counts from.
+  // Reads the limits; on a card without soft limits nothing is limited. `origin`: POSITION at the stream's position 0.
   static StreamLimits read_from(Card& card, const std::array<std::int32_t, card_map::kMaxAxes>& origin,
                                 unsigned stale_periods);
 
-  // What is wrong with a way that the axis goes; empty: nothing. Inward every way is allowed.
+  // The reason why a line is refused; empty if it is allowed. Inward lines are always allowed.
   std::string complaint(unsigned axis, const Way& way) const;
 
  private:
@@ -32,8 +32,8 @@ class StreamLimits {
     std::int64_t minus = 0;
     std::int64_t plus = 0;
   };
-  // Pulses until the axis stands: the line goes on for the stale periods, then the ratio falls evenly to 0, so that
-  // half of the slew's time counts.
+  // Pulses until the axis is at rest. The line continues for the stale periods; then the ratio falls linearly to 0, so
+  // half of the slew time counts.
   std::int64_t stopping(const Way& way) const;
 
   std::array<std::optional<Ends>, card_map::kMaxAxes> ends_;

@@ -13,7 +13,7 @@ namespace {
 namespace map = card_map;
 namespace reg = card_map::reg;
 
-// By PieceClass.
+// Indexed by PieceClass.
 constexpr std::array<std::uint32_t, kPieceClasses> kRatios{reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
 
 }  // namespace

@@ -7,11 +7,11 @@
 namespace trammel::driver {
 namespace {
 
-// pi/2 in two parts. The first has 33 bits, so that its product with up to 2^20 quarters is exact.
+// pi/2 in two parts. The first has 33 bits, so that its product with up to 2^20 quarter turns is exact.
 constexpr double kQuarterHigh = 0x1.921fb544p+0;
 constexpr double kQuarterLow = 0x1.0b4611a626331p-34;
 
-// Taylor series on |x| <= pi/4; the first term left out is below 2^-54: x^17/17! and x^18/18!.
+// Taylor series for |x| <= pi/4. The first omitted terms are below 2^-54: x^17/17! and x^18/18!.
 double sine_series(double x) {
   const double square = x * x;
   double sum = -1.0 / 1307674368000.0;
@@ -47,7 +47,7 @@ constexpr std::array<double, 9> kEighths = {0.0,
                                             0.7188299996216245,
                                             0.7853981633974483};
 
-// On |x| <= 1/15; the first term left out is x^15/15.
+// For |x| <= 1/15; the first omitted term is x^15/15.
 double arc_tangent_series(double x) {
   const double square = x * x;
   double sum = 1.0 / 13.0;
@@ -59,8 +59,8 @@ double arc_tangent_series(double x) {
   return x + x * square * sum;
 }
 
-// arctan(low / high), 0 <= low <= high, high > 0: arctan t = arctan c + arctan((t - c) / (1 + t c)), c the eighth next
-// to t.
+// arctan(low / high), 0 <= low <= high, high > 0: arctan t = arctan c + arctan((t - c) / (1 + t c)), where c is the
+// multiple of 1/8 nearest to t.
 double first_octant(double low, double high) {
   const auto eighths = static_cast<std::size_t>(8 * (low / high) + 0.5);
   const double near = static_cast<double>(eighths) / 8;

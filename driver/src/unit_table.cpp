@@ -31,7 +31,7 @@ template <typename... Values>
 
 using Words = std::bitset<kWindowWords>;
 
-// Marks the words of all instances as taken.
+// Marks the words of all instances as used.
 void take_words(const Descriptor& d, Words& taken) {
   if (d.words == 0) return;
   const std::uint32_t instances = d.stride == 0 ? 1 : d.instances;
@@ -49,7 +49,7 @@ void take_words(const Descriptor& d, Words& taken) {
   }
 }
 
-// The driver's own addresses are constants of the map: a unit that it knows must lie there.
+// The driver uses the addresses of the map as constants, so a unit that it knows must be at its address.
 void check_known(const Descriptor& d, const map::Unit& unit, unsigned axes) {
   if (d.major != unit.major) {
     refuse(d, "version {}.{}, this driver takes version {}", d.major, d.minor, unit.major);

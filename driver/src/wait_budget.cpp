@@ -17,7 +17,7 @@ std::uint64_t saturated(Uint128 value) {
   return value.high() != 0 ? std::numeric_limits<std::uint64_t>::max() : value.low();
 }
 
-// ceil(gated / ratio); a division of 128 bits only where there is something to divide.
+// ceil(gated / ratio); divides 128 bits only if the ratio is not 1.
 Uint128 at_ratio(Uint128 gated, std::uint32_t ratio) {
   if (ratio != kFullRatio) return ceil_div(gated, ratio);
   return (gated + Uint128(kFullRatio - 1)) >> constant::kRatioFractionBits;
@@ -41,7 +41,7 @@ void WaitBudget::allow_again() {
   waited_ = waited;
 }
 
-// What runs now, as far as it is known, has a ratio of 0.
+// Whether the part under way, as far as known, has a ratio of 0.
 bool WaitBudget::stands() const {
   for (std::size_t i = 0; i < gated_left_.size(); ++i) {
     if (gated_left_[i] > Uint128(0)) return ratio_of(i) == 0;
@@ -49,8 +49,7 @@ bool WaitBudget::stands() const {
   return false;
 }
 
-// Clocks that may still be waited at the ratios that the card is known to have; what has a ratio of 0 is waited for
-// when its turn comes.
+// Clocks that remain at the ratios known so far. A part with ratio 0 is waited for when its turn comes.
 std::uint64_t WaitBudget::left() const {
   Uint128 clocks(real_left_);
   for (std::size_t i = 0; i < gated_left_.size(); ++i) {
@@ -70,8 +69,8 @@ bool WaitBudget::ratios_changed(const Access* accesses, std::size_t count) {
   return changed;
 }
 
-// The card is asked for its time base only once the time has passed: somebody else may have set it, and on the way from
-// one ratio to another it is lower for as long as a full slew at most, down and up again.
+// Reads the card's time base only after the time has passed. Another program may have changed it. Between two ratios
+// the actual ratio is lower, for at most a full slew down and up again.
 bool WaitBudget::overdue() {
   const std::size_t ratios = card_.parts().time_base.has_classes() ? kPieceClasses : 1;
   std::array<Access, kPieceClasses + 2> accesses{read_of(reg::kRatioFeed), read_of(reg::kRatioRapid),
@@ -87,7 +86,8 @@ bool WaitBudget::overdue() {
     return false;
   }
   if (slews_counted_) {
-    // Lower for a while and back again, which nothing tells: a piece still runs.
+    // Another program may have lowered the ratio temporarily, which leaves no trace; the card is not overdue while a
+    // piece runs.
     const Snapshot now = card_.read_snapshot();
     const bool runs = margin_ != 0 && now.rate != 0 && now.ratio != 0;
     if (runs) allow_again();
@@ -115,12 +115,12 @@ void WaitBudget::count(std::uint64_t clocks) {
 }
 
 void WaitBudget::pause(const Status& status, std::uint64_t clocks, std::uint32_t wake) {
-  // An interrupt tells of the end by itself; looks are for other threads' requests then.
+  // An interrupt reports the end by itself; polls then only serve requests of other threads.
   constexpr std::uint32_t kLooksPerSecond = 100;
   const std::uint32_t clock_hz = card_.identification().clock_hz;
   std::uint64_t longest = clocks;
   if (wake != 0 && card_.bus().has_interrupt()) longest = std::max<std::uint64_t>(clocks, clock_hz / kLooksPerSecond);
-  // An input comes when it comes.
+  // The time until an input's level is unlimited.
   const bool stopped = status.held || status.waiting;
   if (!stopped && (stands() || left() == 0) && overdue()) {
     throw TimeoutError(context_, waited_);
@@ -129,8 +129,7 @@ void WaitBudget::pause(const Status& status, std::uint64_t clocks, std::uint32_t
   if (counts) {
     longest = std::min(longest, left());
   }
-  // After an interrupt nothing says how much time has passed; what raised it may still stand, so the next pause is one
-  // of time alone.
+  // After an interrupt the elapsed time is unknown. Its cause may still be present, so the next pause is a sleep.
   if (interrupted_) {
     interrupted_ = false;
     card_.bus().sleep(time_of(longest, clock_hz));

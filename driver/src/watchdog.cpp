@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kUnitClocks = 65'536;
 constexpr std::uint64_t kMaxUnits = 0xFFFF;
-constexpr unsigned kMapMinorOfLinkTimeout = 5;  // it came with map 3.5
+constexpr unsigned kMapMinorOfLinkTimeout = 5;  // LINK_TIMEOUT came with map 3.5
 
 }  // namespace
 
@@ -49,8 +49,8 @@ void Watchdog::write() {
   registers_.transfer(accesses.data(), restarts(), "watchdog");
 }
 
-// LINK_TIMEOUT is written with each of them: after a connection that was made anew it says that its session is the one
-// that writes.
+// LINK_TIMEOUT is written each time: after a new connection the write tells the card that this session is the writing
+// one.
 std::array<Access, Watchdog::kRestarts> Watchdog::restart() const {
   return {write_of(card_map::reg::kWatchdog, units_), write_of(card_map::reg::kLinkTimeout, units_)};
 }
@@ -58,7 +58,7 @@ std::array<Access, Watchdog::kRestarts> Watchdog::restart() const {
 std::size_t Watchdog::restarts() const { return card_.map_minor >= kMapMinorOfLinkTimeout ? 2 : 1; }
 
 WatchdogScope::~WatchdogScope() {
-  // Whatever a link throws: the card is then left to its watchdog.
+  // If the link fails, the card is left to its watchdog.
   try {
     if (!card_.busy()) card_.set_watchdog(std::chrono::nanoseconds(0));
   } catch (...) {

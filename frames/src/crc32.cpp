@@ -6,7 +6,7 @@ namespace trammel::frames {
 
 namespace {
 
-constexpr std::uint32_t kPolynomial = 0xEDB88320;  // 0x04C11DB7, its bits in reverse
+constexpr std::uint32_t kPolynomial = 0xEDB88320;  // 0x04C11DB7 with its bits reversed
 
 constexpr std::array<std::uint32_t, 256> make_table() {
   std::array<std::uint32_t, 256> table{};

@@ -9,7 +9,7 @@ namespace trammel::frames {
 namespace {
 
 namespace reg = card_map::reg;
-// The state of a reply is one block of registers.
+// The state in a reply is read from one block of registers.
 static_assert(reg::kFault == reg::kStatus + 4 && reg::kRefusal == reg::kStatus + 8);
 static_assert(reg::kGeometryRoom == reg::kStatus + 12 && reg::kFeedRoom == reg::kStatus + 16);
 static_assert(reg::kFeedRoom == reg::kStatus + 4 * (kStateWords - 1));

@@ -19,12 +19,12 @@ using std::chrono::steady_clock;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// A client that is sent away is listened to for so long, so that the reason reaches it.
+// A refused client's stream is read for this long, so that the reason reaches it.
 constexpr auto kFarewell = 1s;
-constexpr auto kLook = 2ms;                           // where nothing is due
-constexpr std::size_t kMaxClients = kMaxReaders + 2;  // who moves the card, and one that has not begun
+constexpr auto kLook = 2ms;                           // interval of polls when nothing is due
+constexpr std::size_t kMaxClients = kMaxReaders + 2;  // plus the mover, and one that has not started
 
-// What changes nothing that moves: the order for a snapshot, and forgetting what was refused.
+// Whether a reader may make this write: it affects no motion (request for a snapshot, clearing of REFUSAL).
 bool serves_reading(std::uint32_t address, std::uint32_t data) {
   return (address == reg::kControl && data == field::kControlSnapshot) || address == reg::kRefusal;
 }
@@ -78,7 +78,7 @@ void CardServer::turn() {
 void CardServer::admit() {
   std::unique_ptr<transport::ByteStream> stream = listener_.accept();
   if (!stream) return;
-  // Who comes when the one before has gone is not a second one: its end is here by now.
+  // Serves the others first: the end of a client that left before this one came has arrived by now.
   serve_clients();
   if (clients_.size() == kMaxClients) return refuse(std::move(stream), "the server has no place: try again later");
   ++counts_.clients;
@@ -86,14 +86,14 @@ void CardServer::admit() {
   clients_.push_back(std::make_unique<Client>(std::move(stream), *this));
 }
 
-// The oldest first: so one that has gone leaves its place before another one asks for it.
+// Serves the oldest client first, so that a client that has left frees its place before another one asks for it.
 void CardServer::serve_clients() {
   std::vector<Client*> clients;
   for (const auto& client : clients_) clients.push_back(client.get());
   for (Client* const client : clients) serve_client(*client, 0ns);
 }
 
-// It may be gone afterwards.
+// The client may no longer exist afterwards.
 void CardServer::serve_client(Client& client, std::chrono::nanoseconds longest) {
   const std::uint64_t requests = client.requests();
   const std::uint64_t dropped = client.dropped();
@@ -118,7 +118,7 @@ void CardServer::serve_client(Client& client, std::chrono::nanoseconds longest) 
   }
 }
 
-// It is no client of the card any more. It could not move the card: its hello ended that.
+// Removes the client from the card's clients. It could not move the card, because its hello ended that right.
 void CardServer::send_to_world(Client& client, bool may_press, std::string came) {
   std::unique_ptr<transport::ByteStream> stream = client.take_stream();
   forget(client);
@@ -173,7 +173,8 @@ void CardServer::drain_leaving() {
   leaving_.erase(std::remove_if(leaving_.begin(), leaving_.end(), gone), leaving_.end());
 }
 
-// Of who moves the card, else of all, those at the machine among them.
+// Clocks until the next answer of the client that moves the card is due; without such a client, of any client,
+// including those at the machine.
 std::optional<std::uint64_t> CardServer::clocks_to_next() const {
   if (const Client* const client = mover()) return client->clocks_to_next();
   std::optional<std::uint64_t> next = at_world_->clocks_to_next();
@@ -183,8 +184,8 @@ std::optional<std::uint64_t> CardServer::clocks_to_next() const {
   return next;
 }
 
-// In real time the card keeps up with life; else it runs to what the client waits for, and where nobody says how long
-// he waits, for as long as something moves.
+// In real time the card follows the host's clock. Otherwise it runs to the time for which the client waits; if no
+// client says how long it waits, the card runs as long as it moves.
 void CardServer::pass_time() {
   const std::optional<std::uint64_t> next = clocks_to_next();
   if (next && *next == 0) return;

@@ -15,17 +15,17 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::uint8_t kMeasured = 0x55;  // with which a serial line begins
+constexpr std::uint8_t kMeasured = 0x55;  // first byte on a serial line
 constexpr char kHello[] = "trammel 1";
-constexpr char kToWorld[] = "trammel 1 at world";  // and no token, which has no spaces
-constexpr std::uint64_t kMaxRubbish = 64 * 1024;   // bytes without a frame among them
+constexpr char kToWorld[] = "trammel 1 at world";  // no token contains spaces
+constexpr std::uint64_t kMaxRubbish = 64 * 1024;   // bytes without a valid frame
 constexpr char kWait[] = "wait ";
 constexpr std::size_t kLongestText = 100;
-constexpr auto kSilentStill = std::chrono::seconds(1);  // a program that lives has written by then
+constexpr auto kSilentStill = std::chrono::seconds(1);  // a live program has written by then
 
 frames::Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-// The same time for every token.
+// Compares tokens in constant time.
 bool same(const std::string& a, const std::string& b) {
   unsigned difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -57,7 +57,8 @@ void CardServer::Client::serve(std::chrono::nanoseconds longest) {
   send_due();
 }
 
-// All that has come, so that an end behind it is seen at once: what was not at the card by then does not run.
+// Reads all received bytes, so that a closed connection is seen at once: requests that had not reached the card by then
+// do not run.
 void CardServer::Client::read(std::chrono::nanoseconds longest) {
   std::uint8_t bytes[4096];
   const auto before = static_cast<std::ptrdiff_t>(came_.size());
@@ -68,7 +69,7 @@ void CardServer::Client::read(std::chrono::nanoseconds longest) {
     if (came_.size() > kMaxRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
   }
   if (stream_->changed_hands()) {
-    // The next one's, or of both: nobody's rights go with it.
+    // The new bytes come from the next client or from both; they get neither client's rights.
     came_.erase(came_.begin(), came_.begin() + before);
     text_.clear();
     between_frames_ = true;
@@ -78,7 +79,7 @@ void CardServer::Client::read(std::chrono::nanoseconds longest) {
   check_silence();
 }
 
-// Who has not begun is not helped by single bytes.
+// Single bytes do not extend the time of a client that has not started.
 void CardServer::Client::check_silence() const {
   const auto most = begun_ ? settings_.silence : settings_.hello;
   if (most.count() == 0 || !answers_.empty() || !came_.empty() || steady_clock::now() - heard_ < most) return;
@@ -86,8 +87,8 @@ void CardServer::Client::check_silence() const {
                              std::chrono::duration<double>(most).count()));
 }
 
-// Where a frame may begin, a hello may as well, and a wait of who has said one: no frame has their first letters. They
-// take no time on the line. False: the byte is not due yet.
+// Between frames, a hello may begin, and a wait too after a hello; no frame starts with their first letters. Both take
+// no time on the line. Returns false if the byte is not due yet.
 bool CardServer::Client::take_byte(std::uint8_t byte) {
   if (text_.empty()) {
     const bool line_begins = byte == kMeasured;
@@ -107,22 +108,22 @@ bool CardServer::Client::take_byte(std::uint8_t byte) {
   text_ += static_cast<char>(byte);
   if (text_.size() <= kLongestText) return true;
   if (hello) throw Unwanted("no hello of this version");
-  // No wait: rubbish up to the next end.
+  // Not a wait: drops bytes up to the next end.
   drop(text_.size());
   text_.clear();
   between_frames_ = false;
   return true;
 }
 
-// On a terminal a client may follow another one unseen.
+// On a terminal a client may be replaced by another one without notice.
 void CardServer::Client::begin_anew() {
   if (may_move_) server_.hold(peer() + ": another one has its place");
   hello_ = false;
   may_move_ = false;
 }
 
-// A host that is cut off or stopped ends no connection. Its own watchdog says so; a fault that an earlier program has
-// left says nothing of one that speaks.
+// The connection of a host that is cut off or halted does not end; an expired watchdog shows that state. A watchdog
+// fault left by an earlier program says nothing about a client that still sends.
 bool CardServer::Client::counts_as_dead() const {
   const bool expired = (engine_.read(card_map::reg::kFault) & card_map::field::kFaultWatchdog) != 0;
   return expired && steady_clock::now() - heard_ > kSilentStill;
@@ -140,13 +141,13 @@ void CardServer::Client::begin() {
   if (!may_move_ && server_.readers() > kMaxReaders) throw Unwanted("as many clients read as the server takes");
 }
 
-// "trammel 1 at world", or with a space and the token behind it.
+// `line`: "trammel 1 at world", or the same followed by a space and the token.
 void CardServer::Client::go_to_world(const std::string& line) {
   const std::string token = line.substr(std::min(line.size(), sizeof(kToWorld)));
   if (!token.empty() && !same(token, settings_.token)) {
     throw Unwanted("wrong token: take the one that the server has printed");
   }
-  came_.pop_front();  // the end of the line
+  came_.pop_front();  // newline
   throw GoesToWorld{!token.empty(), std::string(came_.begin(), came_.end())};
 }
 
@@ -166,7 +167,7 @@ void CardServer::Client::take_hello(const std::string& line) {
   hello_ = true;
   may_move_ = with_token;
   begin();
-  if (may_move_) server_.motion_.connect();  // nothing that its predecessor has left of a frame
+  if (may_move_) server_.motion_.connect();  // drops a partial frame of its predecessor
   const std::string& held_by = server_.held_by_;
   const std::string held = held_by.empty() ? "" : " held: " + held_by.substr(0, kLongestText);
   answer(bytes_of(fmt::format("trammel 1 {}{}\n", may_move_ ? "motion" : "reading", held)), engine_.cycles());
@@ -175,7 +176,7 @@ void CardServer::Client::take_hello(const std::string& line) {
 bool CardServer::Client::deliver(std::uint8_t byte) {
   const auto now = static_cast<double>(engine_.cycles());
   if (line_in_ > now && !has_no_say_in_time()) return false;
-  // Within the clock in which the line became free the next byte follows without a gap.
+  // If the line became free in this clock, the next byte follows without a gap.
   if (now - line_in_ >= 1) line_in_ = now;
   line_in_ += clocks_of_byte_;
   between_frames_ = byte == frames::kEnd;
@@ -192,8 +193,8 @@ bool CardServer::Client::deliver(std::uint8_t byte) {
   return true;
 }
 
-// The answer repeats the time and the number, so that the client sees what was understood. One that was damaged is
-// dropped, as a frame is.
+// The answer repeats time and number, so that the client sees how its wait was understood. A damaged wait is dropped,
+// as a damaged frame is.
 void CardServer::Client::take_wait(const std::string& text) {
   constexpr std::int64_t kMax = 1'000'000'000;  // ns
   const char* const end = text.data() + text.size();
@@ -211,7 +212,7 @@ void CardServer::Client::take_wait(const std::string& text) {
          engine_.cycles() + driver::clocks_of(std::chrono::nanoseconds(time), settings_.clock_hz, "wait"));
 }
 
-// Bytes that are no good until a frame or a wait is whole.
+// Counts bytes since the last complete frame or wait.
 void CardServer::Client::drop(std::size_t bytes) {
   since_good_ += bytes;
   if (since_good_ > kMaxRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMaxRubbish));
@@ -224,7 +225,8 @@ void CardServer::Client::answer(frames::Bytes bytes, std::uint64_t cycle) {
   answers_.push_back({std::move(bytes), cycle, steady_clock::now() + life});
 }
 
-// Who moves the card decides alone when its time goes on. For a reader beside it, time that stands passes as in life.
+// Only the client that moves the card decides when the card's time advances. While that time does not advance, a
+// reader's answers are timed by the host's clock.
 bool CardServer::Client::has_no_say_in_time() const {
   return !settings_.real_time && !may_move_ && server_.mover() != nullptr;
 }

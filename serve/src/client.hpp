@@ -1,4 +1,4 @@
-// One client: its hello, what it sends, when of the card's time that arrives, and when its answers leave.
+// One client: its hello, its bytes, the card time at which they arrive, and the card time at which its answers leave.
 #pragma once
 
 #include <chrono>
@@ -16,19 +16,19 @@
 
 namespace trammel::serve {
 
-// A client that cannot stay; what() is why, for it and for the operator.
+// Thrown for a client that must be disconnected; what() is the reason, for the client and for the operator.
 class Unwanted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// A client that wants to look at the machine, not at the card.
+// Thrown for a client that asks for the machine, not for the card.
 struct GoesToWorld {
   bool may_press;
-  std::string came;  // behind its hello
+  std::string came;  // bytes after its hello
 };
 
-// One more may have come and not begun yet; so who moves the card finds a place.
+// One further client may be connected and not started, so that the client that moves the card finds a place.
 constexpr std::size_t kMaxReaders = 8;
 
 class CardServer::Client {
@@ -36,32 +36,33 @@ class CardServer::Client {
   // `server` must outlive it.
   Client(std::unique_ptr<transport::ByteStream> stream, CardServer& server);
 
-  // Reads what has come, waiting for at most `longest`; makes what is due at the card's time; sends what is due.
-  // Throws driver::LinkError when the client has gone, Unwanted when it cannot stay, or has lost its place.
+  // Reads received bytes, waiting for at most `longest`; executes requests that are due in card time; sends answers
+  // that are due. Throws driver::LinkError when the client has left, Unwanted when it must be disconnected or has lost
+  // its place.
   void serve(std::chrono::nanoseconds longest);
 
-  // Clocks until something is due; none when it is the client's turn.
+  // Clocks until something is due; nullopt if the server waits for the client.
   std::optional<std::uint64_t> clocks_to_next() const;
 
   bool may_move() const { return may_move_; }
-  // Of the one that may move the card: it has let its watchdog expire, and is silent still.
+  // For the client that may move the card: its watchdog has expired, and it is still silent.
   bool counts_as_dead() const;
-  // Its right to move the card goes; the card holds. Its next turn ends it.
+  // Removes its right to move the card, and makes the card hold. Its next serve() ends it.
   void lose_place(const std::string& why);
   bool reads() const { return begun_ && !may_move_; }
-  // Lets time pass by itself; only then the card's time waits for it.
+  // Whether the client says how long it waits; only then does the card's time wait for it.
   bool waits_by_itself() const { return hello_; }
   std::string peer() const { return stream_->peer(); }
   std::uint64_t requests() const { return requests_; }
-  std::uint64_t dropped() const { return server_.motion_.dropped() + reading_.dropped(); }  // frames, of both
+  std::uint64_t dropped() const { return server_.motion_.dropped() + reading_.dropped(); }  // frames, both endpoints
   const frames::Session& reading_session() const { return reading_.session(); }
   std::unique_ptr<transport::ByteStream> take_stream() { return std::move(stream_); }
 
  private:
   struct Answer {
     frames::Bytes bytes;
-    std::uint64_t cycle;                         // leaves when this has come
-    std::chrono::steady_clock::time_point life;  // when that would be in real time
+    std::uint64_t cycle;                         // clock at which it leaves
+    std::chrono::steady_clock::time_point life;  // the same in real time
   };
 
   void read(std::chrono::nanoseconds longest);
@@ -84,21 +85,21 @@ class CardServer::Client {
   sim::Engine& engine_;
   const Settings& settings_;
   frames::Endpoint reading_;
-  double clocks_of_byte_;                        // on the line, in card time
-  std::chrono::steady_clock::time_point heard_;  // something; before it has begun: when it came
-  std::deque<std::uint8_t> came_;                // not yet at the card
+  double clocks_of_byte_;                        // clocks per byte on the line
+  std::chrono::steady_clock::time_point heard_;  // time of the last bytes; before the start: of the connection
+  std::deque<std::uint8_t> came_;                // received, not yet at the card
   std::deque<Answer> answers_;
-  double line_in_ = 0;  // clock from which on the line is free, to the card and back
-  double line_out_ = 0;
-  std::string text_;              // of a hello or a wait, as far as it has come
+  double line_in_ = 0;            // clock from which the line to the card is free
+  double line_out_ = 0;           // clock from which the line back is free
+  std::string text_;              // partial hello or wait
   bool between_frames_ = true;    // the last byte was an end
-  std::uint64_t since_good_ = 0;  // bytes
+  std::uint64_t since_good_ = 0;  // bytes since the last valid frame or wait
   std::uint64_t requests_ = 0;
-  bool spoken_ = false;  // began as a client may
-  bool begun_ = false;   // said hello, or sent a frame that was one
+  bool spoken_ = false;  // its first byte was a legal one
+  bool begun_ = false;   // has sent a hello or a valid frame
   bool hello_ = false;
   bool may_move_ = false;
-  std::string displaced_;  // why it has lost its place; empty where it has not
+  std::string displaced_;  // why it lost its place; empty if it has not
 };
 
 }  // namespace trammel::serve

@@ -10,9 +10,9 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::duration;
 
-constexpr std::uint64_t kPiece = 5000;  // clocks; the Verilated card takes some ms for them
-constexpr double kMaxBehind = 0.5;      // seconds
-constexpr double kLeast = 0.0005;       // s of the card, that are worth running for: else the server sleeps
+constexpr std::uint64_t kPiece = 5000;  // clocks; they take the Verilated card some ms
+constexpr double kMaxBehind = 0.5;      // s, largest delay that is made up
+constexpr double kLeast = 0.0005;       // s of card time, smallest piece to run; below it the server sleeps
 constexpr auto kTellAgain = 10s;
 
 }  // namespace
@@ -22,7 +22,7 @@ void CardServer::Pace::anchor() {
   anchor_cycle_ = engine_.cycles();
 }
 
-// A card that is far behind is not made to run faster than life afterwards: what was lost stays lost, and is told.
+// A card that is far behind does not run faster afterwards to catch up: the lost time is reported and not made up.
 std::uint64_t CardServer::Pace::due(std::uint64_t wanted) {
   if (!settings_.real_time) return wanted;
   const double life = duration<double>(Clock::now() - anchor_time_).count();

@@ -1,4 +1,4 @@
-// How the card's time goes on beside the host's.
+// Advances the card's time relative to the host's.
 #pragma once
 
 #include <chrono>
@@ -17,9 +17,10 @@ class CardServer::Pace {
 
   Pace(sim::Engine& engine, const Settings& settings) : engine_(engine), settings_(settings) { anchor(); }
 
-  // Clocks that the card may run now, `wanted` at most: all of them, or as many as it is behind life.
+  // Number of clocks that the card may run now, at most `wanted`: all of them, or in real time as many as it is behind
+  // the host's clock.
   std::uint64_t due(std::uint64_t wanted);
-  // Runs them, in a piece that leaves the server awake.
+  // Runs at most `clocks` clocks, in a piece that is short enough for the server to respond.
   void run(std::uint64_t clocks);
 
  private:
@@ -29,7 +30,7 @@ class CardServer::Pace {
   const Settings& settings_;
   Clock::time_point anchor_time_;
   std::uint64_t anchor_cycle_ = 0;
-  Clock::time_point told_{};  // that it is slower than life
+  Clock::time_point told_{};  // last report that the card is slower than real time
 };
 
 }  // namespace trammel::serve

@@ -8,7 +8,7 @@
 namespace trammel::serve {
 
 std::string random_token() {
-  std::random_device random;  // the system's
+  std::random_device random;  // the system's random numbers
   std::string token;
   for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", random());
   return token;

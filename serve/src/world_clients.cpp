@@ -15,8 +15,8 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kMaxWorldClients = 8;
 constexpr std::size_t kLongestRequest = 200;
-// Behind a press its answer waits for so long, in the card's time: by then the default contact has ceased to bounce,
-// and the default filter has passed the level on.
+// Card time from a press to its answer: by then the default contact has stopped bouncing, and the default filter has
+// passed the level.
 constexpr double kSettled = 0.02;  // s
 
 }  // namespace
@@ -48,7 +48,7 @@ bool CardServer::WorldClients::stays(Client& client) {
     read(client);
     if (client.request) make(client);
     if (client.due) answer(client);
-    // One request at a time, and no further one before its answer.
+    // One request at a time: the next one waits for the answer.
     while (!client.request && !client.due && client.came.find('\n') != std::string::npos) take_line(client);
     return true;
   } catch (const driver::LinkError&) {
@@ -87,7 +87,7 @@ void CardServer::WorldClients::take_line(Client& client) {
   if (client.due) answer(client);
 }
 
-// Once its condition holds.
+// Executes the request if its condition is met.
 void CardServer::WorldClients::make(Client& client) {
   using Kind = world::Request::Kind;
   world::World& world = *server_.settings_.world;
@@ -106,7 +106,8 @@ void CardServer::WorldClients::make(Client& client) {
   client.life = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// As for a reader: beside a client that decides when the card's time goes on, time that stands passes as in life.
+// As for a reader: if a client decides when the card's time advances, answers are timed by the host's clock while that
+// time does not advance.
 bool CardServer::WorldClients::mover_decides() const {
   return !server_.settings_.real_time && server_.mover() != nullptr;
 }

@@ -1,6 +1,6 @@
-// Clients that look at the machine behind the card and press its buttons, beside the one that moves the card:
-// docs/reference/card-url.md. They are served between two turns of the card, in the server's one thread, so nothing of
-// theirs falls into an access.
+// Clients that read the machine behind the card and press its buttons, beside the one that moves the card:
+// docs/reference/card-url.md. They are served between two turns of the card, in the server's only thread, so they never
+// act during an access.
 #pragma once
 
 #include <chrono>
@@ -21,12 +21,13 @@ class CardServer::WorldClients {
   // `server` must outlive it.
   explicit WorldClients(CardServer& server) : server_(server) {}
 
-  // A client that has said its hello; `came`: what it sent behind that. Throws Unwanted where there is no world, and
-  // where as many have come as are served.
+  // Admits a client that has sent its hello. `came`: the bytes after it. Throws Unwanted if there is no world, or as
+  // many clients as the server serves.
   void admit(std::unique_ptr<transport::ByteStream>& stream, bool may_press, std::string came);
-  // Takes what has come, presses what is due, sends what is due. Who goes or is sent away is forgotten.
+  // Handles received bytes, presses buttons that are due, sends answers that are due. Removes clients that leave or are
+  // disconnected.
   void serve();
-  // Clocks until an answer is due; none where none waits for time.
+  // Clocks until an answer is due; nullopt if none waits for time.
   std::optional<std::uint64_t> clocks_to_next() const;
 
  private:
@@ -34,11 +35,11 @@ class CardServer::WorldClients {
   struct Client {
     std::unique_ptr<transport::ByteStream> stream;
     bool may_press = false;
-    std::string came;                        // not taken yet
-    std::optional<world::Request> request;   // that waits for its condition
-    std::optional<std::uint64_t> due;        // clock at which its answer leaves
-    Clock::time_point life = Clock::now();   // when that would be in real time
-    Clock::time_point heard = Clock::now();  // something
+    std::string came;                        // bytes not handled yet
+    std::optional<world::Request> request;   // request that waits for its condition
+    std::optional<std::uint64_t> due;        // clock at which its answer is due
+    Clock::time_point life = Clock::now();   // the same in real time
+    Clock::time_point heard = Clock::now();  // time of the last bytes
   };
 
   bool stays(Client& client);

@@ -14,10 +14,10 @@ namespace {
 
 using model::CardModel;
 
-// An access takes some ten clocks, a START some hundred; one that takes more has hung.
+// An access takes some ten clocks, a START some hundred. An access that takes longer than this has hung.
 constexpr int kMaxAnswerClocks = 100'000;
 
-// A step's direction as the lists have it.
+// A step's direction in the form of the step lists.
 std::int8_t sign(int direction) { return static_cast<std::int8_t>(direction < 0 ? -1 : 1); }
 
 [[noreturn]] void throw_unanswered(const driver::Access& access) {
@@ -39,7 +39,7 @@ void Engine::write(std::uint32_t address, std::uint32_t value) {
 }
 
 bool Engine::wait_or_interrupt(std::uint64_t clocks) {
-  constexpr std::uint64_t kPiece = 100'000;  // clocks; the Verilated card takes a tenth of a second for them
+  constexpr std::uint64_t kPiece = 100'000;  // clocks; they take the Verilated card a tenth of a second
   for (std::uint64_t left = clocks; left != 0; left -= std::min(left, kPiece)) {
     wait(std::min(left, kPiece));
     if (driver::interrupted()) return false;
@@ -57,7 +57,7 @@ std::size_t BusEngine::transfer(driver::Access* accesses, std::size_t count) {
 
 void BusEngine::sleep(std::chrono::nanoseconds time) { wait_or_interrupt(driver::clocks_of(time, clock_hz_, "sleep")); }
 
-// Clock by clock: what raises the line may come at any of them.
+// Runs clock by clock, because the line may be raised in any clock.
 bool BusEngine::wait_for_interrupt(std::chrono::nanoseconds longest) {
   if (!interrupt_) return Bus::wait_for_interrupt(longest);
   for (std::uint64_t left = driver::clocks_of(longest, clock_hz_, "wait"); left != 0 && !card().outputs().irq; --left) {
@@ -110,7 +110,7 @@ void BusEngine::reset() {
   CardModel::Inputs in;
   in.rst = true;
   clock(in);
-  // The reset is registered: one more clock under it.
+  // The reset is registered, so it lasts one clock longer.
   clock({});
 }
 

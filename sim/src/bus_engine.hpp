@@ -1,5 +1,5 @@
-// The bus of a simulated card: accesses as an AXI4-Lite master makes them. The cards behind it differ in clock() and
-// idle only. Both answer in the same clocks, so an access takes the same time on both.
+// The bus of a simulated card: makes accesses as an AXI4-Lite master does. The cards behind it differ only in
+// clock_card() and wait(). Both answer in the same number of clocks, so an access takes the same time on both.
 #pragma once
 
 #include "trammel/driver/errors.hpp"
@@ -47,7 +47,7 @@ class BusEngine : public Engine, private model::CardSteps {
   virtual model::CardModel& card() = 0;
   virtual const model::CardModel& card() const = 0;
 
-  // For the report of a mismatch.
+  // Records an access for the report of a mismatch.
   virtual void note(const driver::Access& access) = 0;
 
  private:
@@ -71,8 +71,8 @@ class BusEngine : public Engine, private model::CardSteps {
   std::uint32_t clock_hz_;
   bool interrupt_;
   std::uint32_t pins_ = 0;
-  std::uint32_t wired_ = 0;      // the others follow INPUT_POLARITY
-  bool emergency_stop_ = false;  // the strap's level that means stop is 1
+  std::uint32_t wired_ = 0;      // inputs that were set; the others follow INPUT_POLARITY
+  bool emergency_stop_ = false;  // pin level; the strap makes 1 mean stop
   driver::StepSink* sink_ = nullptr;
 };
 

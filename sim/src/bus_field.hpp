@@ -1,4 +1,4 @@
-// A field of one of the RTL's bundles, in the words and integers as which Verilator shows a port.
+// A field of one of the RTL's bundles, in the words or integers that Verilator uses for a port.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 namespace trammel::bus {
 
 struct Field {
-  unsigned offset;  // of the lowest bit
+  unsigned offset;  // index of the lowest bit
   unsigned bits;    // 1 to 64
 };
 
@@ -15,7 +15,7 @@ constexpr std::uint64_t mask_of(const Field& field) {
   return field.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << field.bits) - 1;
 }
 
-// The field's value; `port` is an integer, or wide: words of 32 bits, the lowest first.
+// The field's value. `port` is an integer, or wide: 32-bit words, lowest first.
 template <class Port>
 std::uint64_t get(const Port& port, const Field& field) {
   if constexpr (std::is_integral_v<Port>) {
@@ -31,10 +31,10 @@ std::uint64_t get(const Port& port, const Field& field) {
   }
 }
 
-// The same field of one of several equal bundles side by side, `base` bits up.
+// The same field in one of several equal bundles side by side, offset by `base` bits.
 constexpr Field up(const Field& field, unsigned base) { return {field.offset + base, field.bits}; }
 
-// The value in the field's place; bits above the field are dropped.
+// The value shifted to the field's position; bits above the field are dropped.
 constexpr std::uint64_t in_place(const Field& field, std::uint64_t value) {
   return (value & mask_of(field)) << field.offset;
 }

@@ -1,4 +1,4 @@
-// The inputs of the Verilated card, whatever its class.
+// Sets the inputs of the Verilated card, for any of its classes.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace trammel::sim {
 
-// `inputs`: how many the card has.
+// `inputs`: number of the card's inputs.
 template <class Dut>
 void set_inputs(Dut& dut, const model::CardModel::Inputs& in, unsigned inputs = kInputs) {
   dut.rst_i = in.rst;

@@ -1,5 +1,5 @@
-// What the card shows after one rising edge, as memory to be compared: the one list of the signals that the lockstep
-// compares. RTL and golden model each fill a record; equal cards are equal bytes.
+// The card's observable state after one rising edge, as memory to compare: the only list of the signals that the
+// lockstep compares. RTL and golden model each fill a record; equal cards have equal bytes.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@
 #include "trammel/model/card_model.hpp"
 #include "trammel/sim/lockstep.hpp"
 
-// SIGNAL(name, what the RTL shows, the golden model's value, when it means anything)
-// `rtl` is the Verilated card, `seen` its observe_o, `out` and `bus` are the model's outputs; a condition names signals
-// that stand further up. Where it does not hold both records say 0. All signals are compared in every cycle.
+// SIGNAL(name, the RTL's value, the golden model's value, condition under which the signal is valid). `rtl` is the
+// Verilated card, `seen` its observe_o, `out` and `bus` are the model's outputs. A condition may name signals further
+// up in the list. If it is false, both records contain 0. All signals are compared in every cycle.
 #define TRAMMEL_CARD_SIGNALS(SIGNAL)                                      \
   SIGNAL(tick, seen.tick(), out.tick, true)                               \
   SIGNAL(path_tick, seen.path_tick(), out.path_tick, true)                \
@@ -44,7 +44,7 @@
   SIGNAL(rdata_o, rtl.rdata_o, bus.rdata, rvalid_o)                       \
   SIGNAL(rresp_o, rtl.rresp_o, bus.rresp, rvalid_o)
 
-// AXIS_SIGNAL(name, what the RTL shows of axis n, the golden model's value), 32 bits each
+// AXIS_SIGNAL(name, the RTL's value for axis n, the golden model's value), 32 bits each
 #define TRAMMEL_CARD_AXIS_SIGNALS(AXIS_SIGNAL) AXIS_SIGNAL(position, seen.position(n), model.position(n))
 
 namespace trammel::sim {
@@ -75,9 +75,9 @@ class Observed {
   static constexpr bus::Field of_axis(unsigned axis, const bus::Field& field) {
     return up(field, bus::observe::kWidth + bus::axis_observe::kWidth * axis);
   }
-  // Of 32 bits at most.
+  // The value of a field of at most 32 bits.
   std::uint32_t field(const bus::Field& place) const { return static_cast<std::uint32_t>(get(bits_, place)); }
-  // One bit of each axis.
+  // Collects a one-bit field of each axis.
   std::uint32_t of_axes(const bus::Field& place) const {
     std::uint32_t bits = 0;
     for (unsigned axis = 0; axis < kAxes; ++axis) bits |= field(of_axis(axis, place)) << axis;
@@ -124,14 +124,14 @@ struct CardRecord {
   }
 };
 
-// No padding: equal cards are equal bytes.
+// Without padding, equal cards have equal bytes.
 static_assert(std::has_unique_object_representations_v<CardRecord>);
 
-// A signal's place in a record.
+// The position of a signal in a record.
 struct CardSignal {
   const char* name;
   std::size_t offset;  // bytes
-  std::size_t words;   // 1, or one for each of card_map::kMaxAxes
+  std::size_t words;   // 1, or card_map::kMaxAxes
 };
 inline constexpr CardSignal kCardSignals[] = {
 #define TRAMMEL_PLACE(port, shown, golden, when) {#port, offsetof(CardRecord, port), 1},
@@ -141,14 +141,14 @@ inline constexpr CardSignal kCardSignals[] = {
 #undef TRAMMEL_PLACE
 };
 
-// Signals of a record that hold something with `axes` axes, those of each axis counted for themselves.
+// Number of signals in a record with `axes` axes; a signal per axis counts once per axis.
 constexpr unsigned signals_compared(unsigned axes) {
   unsigned signals = 0;
   for (const CardSignal& s : kCardSignals) signals += s.words == 1 ? 1 : axes;
   return signals;
 }
 
-// Every byte of a record has a name.
+// Checks that every byte of a record belongs to a signal.
 constexpr std::size_t named_words() {
   std::size_t words = 0;
   for (const CardSignal& s : kCardSignals) words += s.words;

@@ -1,4 +1,4 @@
-// One variant of the Verilated card; instantiated once for each Verilated class, in a file of its own.
+// One variant of the Verilated card. Each Verilated class has its own file that instantiates it.
 #pragma once
 
 #include "card_inputs.hpp"
@@ -29,8 +29,8 @@ class CardVariant : public VerilatedCard {
   lockstep::Simulated<Dut> dut_;
 };
 
-// Evaluates both edges of each clock, `at_edge` called after each: for a trace, and as the judge of CardVariant, which
-// leaves the falling edge out.
+// Evaluates both edges of each clock, and calls `at_edge` after each: for a trace, and to verify CardVariant, which
+// skips the falling edge.
 template <class Dut, unsigned kAxes>
 class BothEdgesVariant : public CardVariant<Dut, kAxes> {
  public:

@@ -1,4 +1,4 @@
-// Counts of the RTL's coverage points, summed over all models of a process.
+// Sums of the RTL's coverage counts over all models of a process.
 #include "trammel/sim/lockstep.hpp"
 
 #if VM_COVERAGE
@@ -16,17 +16,18 @@ namespace trammel::lockstep {
 
 namespace {
 
-// The name that a symbolic link leads to: the program's, or the process's number.
+// The file name to which a symbolic link leads: the program's name, or the process's number.
 std::string linked(const char* path) { return std::filesystem::read_symlink(path).filename().string(); }
 
-// A test may make hundreds of models: a file for each would take gigabytes with toggle points.
+// Sums the counts, because a test may create hundreds of models: a file for each would take gigabytes with toggle
+// points.
 class CoverageSums {
  public:
   explicit CoverageSums(const std::string& folder)
       : path_(fmt::format("{}/{}.{}.dat", folder, linked("/proc/self/exe"), linked("/proc/self"))) {}
   CoverageSums(const CoverageSums&) = delete;
   CoverageSums& operator=(const CoverageSums&) = delete;
-  // At the process's end, where an exception would find no one: what is missing then, scripts/coverage misses.
+  // Runs at the process's end, where nothing can catch an exception. scripts/coverage reports a missing file.
   ~CoverageSums() {
     std::ofstream file(path_);
     file << "# SystemC::Coverage-3\n";
@@ -49,7 +50,7 @@ class CoverageSums {
  private:
   std::string path_;
   std::mutex mutex_;
-  std::map<std::string, std::uint64_t> sums_;  // by a point's text: "C 'keys and values'"
+  std::map<std::string, std::uint64_t> sums_;  // by the text of a point: "C 'keys and values'"
 };
 
 }  // namespace

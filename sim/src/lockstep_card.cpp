@@ -27,7 +27,7 @@ LockstepCard::LockstepCard(std::unique_ptr<VerilatedCard> card, const model::Car
     card_->run(reset, 1, &unused);
     skip::clock(model_, reset);
   }
-  // The reset is registered: one more clock under it.
+  // The reset is registered, so it lasts one clock longer.
   card_->run({}, 1, &unused);
   skip::clock(model_, {});
   if (thread == RtlThread::kOwn) worker_ = std::make_unique<Worker>();
@@ -54,7 +54,7 @@ void LockstepCard::run(const model::CardModel::Inputs& in, std::uint64_t clocks)
     Batch& batch = batches_[filled_];
     const std::size_t some = std::min<std::uint64_t>(clocks, batch.golden.size() - batch.clocks);
     batch.stretches.push_back({in, 0});
-    // Counted clock by clock: who receives the model's steps may throw.
+    // Counts clock by clock, because the receiver of the model's steps may throw.
     for (std::size_t i = 0; i < some; ++i) {
       skip::clock(model_, in);
       batch.golden[batch.clocks++].show(model_);
@@ -84,7 +84,7 @@ void LockstepCard::give(Batch& batch) {
     job();
 }
 
-// All records at once; they are told apart only when something differs.
+// Compares all records at once, and one by one only if they differ.
 std::size_t LockstepCard::follow(Batch& batch) {
   CardRecord* record = rtl_.data();
   for (const Stretch& stretch : batch.stretches) {
@@ -98,7 +98,7 @@ std::size_t LockstepCard::follow(Batch& batch) {
   return same;
 }
 
-// A batch is compared once, also when that ends in a mismatch; then the other is dropped with it.
+// A batch is compared only once, even if that ends in a mismatch; then both batches are dropped.
 void LockstepCard::judge(Batch& batch) {
   if (!batch.same.valid()) return;
   try {
@@ -117,7 +117,7 @@ void LockstepCard::compare(Batch& batch) {
   cycles_ += compared;
   comparisons_ += compared * signals_;
   if (same == batch.clocks) return;
-  // An event of this many cycles came before the clock that made the difference.
+  // Events logged at cycle `cycles_ - 1` or earlier came before the clock of the difference.
   lockstep::fail("card", cycles_, seed_, differences(batch.different, batch.golden[same]), events_.text(cycles_ - 1));
 }
 

@@ -1,10 +1,10 @@
-// RTL card and golden model on the same bus; every output and all visible state is compared in every cycle.
-// The model goes ahead, since the host needs its answers; the RTL follows in batches, which is faster than clocking the
-// two in turn. What the host sees is the model's: an answer of the RTL that differs is a mismatch like any other.
+// RTL card and golden model on the same bus; every output and all visible state is compared in every cycle. The model
+// runs first, because the host needs its answers. The RTL follows in batches, which is faster than clocking the two in
+// turn. The host sees the model's answers; a different answer of the RTL is a mismatch like any other.
 //
-// Not thread-safe. With RtlThread::kOwn the RTL follows in a thread of its own, a batch beside the model: that thread
-// has the Verilated card, and a batch from the time it is given until it is judged; all else, the events, the model
-// with its steps, and every exception, stays with the thread that calls.
+// Not thread-safe. With RtlThread::kOwn the RTL follows in its own thread, one batch at a time, while the model runs
+// on. That thread owns the Verilated card, and a batch from give() to judge(). Everything else stays with the calling
+// thread: the events, the model with its steps, and all exceptions.
 #pragma once
 
 #include <array>
@@ -27,23 +27,23 @@ class LockstepCard {
  public:
   static constexpr std::size_t kBatch = 2048;  // clocks
 
-  // Both start in reset's state. `card` has as many axes as `config`. The RTL is at most `batch` clocks behind, with a
-  // thread of its own twice as many.
+  // Both start in the state after reset. `card` has as many axes as `config`. The RTL is at most `batch` clocks behind,
+  // or twice as many with its own thread.
   LockstepCard(std::unique_ptr<VerilatedCard> card, const model::CardModel::Config& config, std::uint64_t seed,
                std::size_t batch = kBatch, RtlThread thread = RtlThread::kCallers);
-  // The RTL catches up. A mismatch that is found only here ends the process with its report: nobody is left to catch
-  // it.
+  // Lets the RTL catch up. A mismatch that is found only here ends the process with its report, because no caller can
+  // catch it.
   ~LockstepCard();
   LockstepCard(const LockstepCard&) = delete;
   LockstepCard& operator=(const LockstepCard&) = delete;
 
-  // Rising edges with the same inputs. Throws lockstep::Mismatch on the first difference, as late as the RTL may be
-  // behind; what the model did after it is not compared.
+  // Runs `clocks` rising edges with the same inputs. Throws lockstep::Mismatch on the first difference, late by as much
+  // as the RTL is behind. Clocks of the model after the difference are not compared.
   void run(const model::CardModel::Inputs& in, std::uint64_t clocks);
-  // The RTL catches up. Throws lockstep::Mismatch on the first difference.
+  // Lets the RTL catch up. Throws lockstep::Mismatch on the first difference.
   void settle();
 
-  // Keeps an event for the report of a later mismatch; `what` is a string literal.
+  // Records an event for the report of a later mismatch. `what` is a string literal.
   void event(const char* what, std::uint64_t value) {
     events_.add(cycles_ + batches_[0].clocks + batches_[1].clocks, what, value);
   }
@@ -51,7 +51,7 @@ class LockstepCard {
   model::CardModel& model() { return model_; }
   const model::CardModel& model() const { return model_; }
   const model::Axi4LitePort::Outputs& bus() const { return model_.bus(); }
-  // What was compared up to the last settle().
+  // Cycles and comparisons up to the last settle().
   std::uint64_t cycles() const { return cycles_; }
   std::uint64_t comparisons() const { return comparisons_; }
 
@@ -64,7 +64,7 @@ class LockstepCard {
     std::vector<Stretch> stretches;
     std::vector<CardRecord> golden;
     std::size_t clocks = 0;
-    std::future<std::size_t> same;  // valid while the batch is given: clocks before the first difference
+    std::future<std::size_t> same;  // valid from give() to judge(): clocks before the first difference
     CardRecord different;           // the RTL's record of that difference
 
     void clear();
@@ -78,14 +78,14 @@ class LockstepCard {
   std::unique_ptr<VerilatedCard> card_;
   model::CardModel model_;
   std::uint64_t seed_;
-  std::uint64_t signals_;  // of a record
+  std::uint64_t signals_;  // signals in a record
   std::array<Batch, 2> batches_;
-  std::size_t filled_ = 0;  // the batch that the model fills; the other may be given
+  std::size_t filled_ = 0;  // index of the batch that the model fills; the other may be at the RTL
   std::vector<CardRecord> rtl_;
   lockstep::EventLog events_;
   std::uint64_t cycles_ = 0;
   std::uint64_t comparisons_ = 0;
-  std::unique_ptr<Worker> worker_;  // none: batches are done where they are given. Last: it uses the others
+  std::unique_ptr<Worker> worker_;  // null: batches run in the calling thread. Last member: it uses the others
 };
 
 }  // namespace trammel::sim

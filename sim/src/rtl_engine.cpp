@@ -41,7 +41,7 @@ class RtlEngine final : public BusEngine {
   CardModel& card() override { return card_.model(); }
   const CardModel& card() const override { return card_.model(); }
 
-  mutable LockstepCard card_;  // who asks what was compared makes the RTL catch up
+  mutable LockstepCard card_;  // mutable: a query of the comparisons makes the RTL catch up
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The lockstep engine over a given Verilated card: for tests of the lockstep itself.
+// The lockstep engine for a given Verilated card: for tests of the lockstep itself.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace trammel::sim {
 
-// `card` has options.axes axes; kind is not looked at. With a trace the RTL follows the model clock by clock.
+// `card` has options.axes axes; options.kind is ignored. With a trace the RTL follows the model clock by clock.
 std::unique_ptr<Engine> make_rtl_engine(std::unique_ptr<VerilatedCard> card, const SimulationOptions& options);
 
 }  // namespace trammel::sim

@@ -19,7 +19,7 @@ TimedBus::TimedBus(Engine& engine, std::uint32_t clock_hz, double bytes_per_seco
 std::size_t TimedBus::transfer(driver::Access* accesses, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     run_due_events();
-    // Within the clock in which the bus became free the next access follows without a gap, fractions of it included.
+    // If the bus became free in this clock, the next access follows without a gap, also for fractions of a clock.
     const auto now = static_cast<double>(engine_.cycles());
     if (now - free_ >= 1) free_ = now;
     free_ += clocks_of_access_;
@@ -54,7 +54,7 @@ void TimedBus::run_due_events() {
   }
 }
 
-// An event that takes longer than what is left of the wait makes it longer.
+// An event that takes longer than the rest of the wait prolongs the wait.
 void TimedBus::run_until(std::uint64_t cycle) {
   for (;;) {
     run_due_events();

@@ -1,4 +1,4 @@
-// A variant that writes its signals to an FST file, two time steps a clock.
+// A variant that writes its signals to an FST file, two time steps per clock.
 #pragma once
 
 #include <verilated_fst_c.h>

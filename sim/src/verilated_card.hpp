@@ -1,4 +1,4 @@
-// The Verilated card behind one small interface: Verilator's headers stay in the files that build a variant.
+// A small interface to the Verilated card, so that only the files that build a variant include Verilator's headers.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,17 @@ namespace trammel::sim {
 class VerilatedCard {
  public:
   virtual ~VerilatedCard() = default;
-  // `clocks` rising edges with the same inputs; what the ports show after each goes to records[0 .. clocks - 1].
+  // Runs `clocks` rising edges with the same inputs. The state of the ports after each goes to records[0 .. clocks -
+  // 1].
   virtual void run(const model::CardModel::Inputs& in, std::size_t clocks, CardRecord* records) = 0;
 };
 
-// The card's inputs that stand still.
+// The card's constant inputs.
 struct CardStraps {
   std::uint32_t clock_hz = 1'000'000;
-  std::uint32_t idle_level = 0;      // {second pins, first pins}
-  std::uint32_t output_idle = 0;     // outputs
-  bool emergency_stop_level = true;  // of its pin: the level that means stop
+  std::uint32_t idle_level = 0;      // idle levels: {second pins, first pins}
+  std::uint32_t output_idle = 0;     // idle levels of the outputs
+  bool emergency_stop_level = true;  // level of the emergency stop's pin that means stop
 };
 
 // Axes: 1 to 8; with a trace 4 or 8. `trace`: an FST file, written until the card is destroyed.
@@ -33,7 +34,7 @@ struct CardStraps {
 std::unique_ptr<VerilatedCard> make_verilated_card(unsigned axes, const CardStraps& straps,
                                                    const std::optional<TraceFile>& trace);
 
-// The variants that are built; each in a file of its own.
+// The variants that are built, each in its own file.
 template <unsigned kAxes>
 std::unique_ptr<VerilatedCard> make_card(const CardStraps& straps);
 template <unsigned kAxes>

@@ -1,5 +1,5 @@
-// A thread that does jobs in the order in which they are given.
-// give() and the destructor belong to one thread; what a job's future has, or throws, may be taken in any.
+// A thread that runs jobs in the order in which they are given. One thread calls give() and the destructor; any thread
+// may take a job's result or exception from its future.
 #pragma once
 
 #include <condition_variable>
@@ -16,7 +16,7 @@ class Worker {
   using Job = std::packaged_task<std::size_t()>;
 
   Worker();
-  // The jobs that were given are done first.
+  // Runs all given jobs first.
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -30,7 +30,7 @@ class Worker {
   std::condition_variable given_;
   std::deque<Job> jobs_;
   bool end_ = false;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last member: it uses the others
 };
 
 }  // namespace trammel::sim

@@ -1,4 +1,4 @@
-// TCP and serial ports by Boost.Asio, which is included here alone.
+// TCP and serial ports with Boost.Asio. Only this file includes it.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/file.h>
@@ -23,7 +23,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-// What a socket and a serial port have in common. Neither waits by itself: poll() knows how long.
+// Code shared by sockets and serial ports. Neither waits by itself; poll() limits the waits.
 template <class Port>
 std::size_t read_some(Port& port, std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest,
                       const std::string& peer) {
@@ -67,7 +67,7 @@ class TcpStream final : public ByteStream {
   std::string peer() const override { return peer_; }
 
  private:
-  std::shared_ptr<asio::io_context> io_;  // before what runs on it
+  std::shared_ptr<asio::io_context> io_;  // declared before the socket, which uses it
   tcp::socket socket_;
   std::string peer_;
 };
@@ -79,7 +79,7 @@ class TcpListener final : public Listener {
     error_code error;
     tcp::resolver resolver(*io_);
     const auto found = resolver.resolve(host, std::to_string(port), tcp::resolver::passive, error);
-    // An empty name would be every address.
+    // An empty name would mean all addresses.
     if (host.empty() || error || found.empty()) {
       throw driver::LinkError(fmt::format("\"{}\": no such address of this machine", host));
     }
@@ -98,7 +98,7 @@ class TcpListener final : public Listener {
   std::unique_ptr<ByteStream> accept() override {
     error_code error;
     tcp::socket socket = acceptor_.accept(error);
-    if (error) return nullptr;  // nobody, or gone again
+    if (error) return nullptr;  // no client, or it has left already
     error_code unknown;
     const tcp::endpoint peer = socket.remote_endpoint(unknown);
     if (unknown) return nullptr;

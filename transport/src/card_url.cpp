@@ -21,7 +21,7 @@ constexpr const char* kForms =
   throw driver::ArgumentError(fmt::format("card {}: {}", what, why));
 }
 
-// What was probably meant by a text without a scheme: ": did you mean serial:/dev/ttyUSB0?", or nothing.
+// A hint for a text without a scheme: ": did you mean serial:/dev/ttyUSB0?", or an empty text.
 std::string hint_at_scheme(std::string_view text) {
   constexpr std::pair<std::string_view, std::string_view> kDevices[] = {
       {"/dev/tty", "serial:"}, {"/dev/pts/", "serial:"}, {"/dev/serial/", "serial:"},
@@ -55,7 +55,7 @@ bool yes_or_no(std::string_view name, std::string_view text) {
   return text == "yes";
 }
 
-// One option; false where the kind has none of that name.
+// Sets an option; false if this kind of card has no option of that name.
 bool set_option(CardUrl& url, std::string_view name, std::string_view value) {
   const auto of = [&](Kind kind, std::string_view option) { return url.kind == kind && name == option; };
   const bool frames = url.kind == Kind::kTcp || url.kind == Kind::kSerial || url.kind == Kind::kSpi;
@@ -114,7 +114,7 @@ void set_place(CardUrl& url, std::string_view place) {
   url.port = static_cast<std::uint16_t>(number("port", place.substr(colon + 1), 1, 65535));
 }
 
-// A token is for the server alone.
+// Removes the token, which is only for the server.
 std::string without_token(std::string_view text) {
   std::string result(text.substr(0, text.find('?')));
   std::string_view options = text.substr(result.size());

@@ -30,7 +30,8 @@ std::unique_ptr<StreamLink> stream_link(const CardUrl& url, const driver::FrameB
       std::move(hello), options);
 }
 
-// A stream between computers loses nothing, and the card at its end may be slow: nothing is sent again soon.
+// A stream between computers loses nothing, and the card at its end may be slow: answers get much time, and requests
+// are rarely repeated.
 driver::FrameBus::Options frame_options(const CardUrl& url, bool stream) {
   driver::FrameBus::Options options;
   if (stream) {
@@ -43,7 +44,7 @@ driver::FrameBus::Options frame_options(const CardUrl& url, bool stream) {
   return options;
 }
 
-// What to look at where no card answers.
+// A hint for the user when no card answers.
 const char* hint(const CardUrl& url, bool hello) {
   if (hello) return "what said hello knows no frames: start `trammel serve` anew";
   if (url.kind == Kind::kTcp) return "is a card behind that bridge, and does it have power?";

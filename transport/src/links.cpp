@@ -19,14 +19,14 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr nanoseconds kHelloTime = 5s;
-constexpr nanoseconds kLastHelloTime = 300ms;  // of a server that was silent before, where nobody has patience
-constexpr nanoseconds kLongestWait = 20ms;     // of one wait; long ones go in pieces
+constexpr nanoseconds kLastHelloTime = 300ms;  // for a server that was silent before, if there is a patience
+constexpr nanoseconds kLongestWait = 20ms;     // longest single wait; longer ones are split
 constexpr std::size_t kLongestLine = 200;
 constexpr nanoseconds kDrainTime = 200ms;
 constexpr const char* kHeld = " held: ";
 constexpr const char* kIsItThere = "is that its port?";
 
-// What another program has sent, fit for a terminal.
+// Text from another program, made safe for a terminal.
 std::string plain(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
@@ -40,7 +40,7 @@ void end_if_interrupted(const std::string& peer) {
   throw driver::InterruptedError(fmt::format("{}: interrupted before the connection was made", peer));
 }
 
-// Of who may be anybody.
+// Reads a byte from an unknown program.
 std::size_t read_byte(ByteStream& stream, std::uint8_t& byte, nanoseconds longest) {
   try {
     return stream.read(&byte, 1, longest);
@@ -49,7 +49,7 @@ std::size_t read_byte(ByteStream& stream, std::uint8_t& byte, nanoseconds longes
   }
 }
 
-// Up to the end of the line.
+// Reads up to the end of the line.
 std::string read_line(ByteStream& stream, nanoseconds longest) {
   std::string line;
   const auto until = steady_clock::now() + longest;
@@ -69,7 +69,7 @@ std::string read_line(ByteStream& stream, nanoseconds longest) {
                   line.empty() ? "it says nothing (a bridge to a serial line wants hello=no)" : kIsItThere));
 }
 
-// A stream on which something failed is lost; one that is lost cannot be used.
+// Makes a call on a stream. A stream is lost after a failure; a lost stream cannot be used.
 template <class Stream, class Call>
 auto on_stream(std::unique_ptr<Stream>& stream, const char* name, Call call) {
   if (!stream) throw driver::LinkError(fmt::format("the {} is lost", name));
@@ -103,7 +103,7 @@ void SerialLink::restart() {
   });
 }
 
-// Start bit, eight data bits, stop bit.
+// A byte has a start bit, eight data bits and a stop bit.
 nanoseconds SerialLink::time_of(std::size_t bytes) const {
   return nanoseconds(static_cast<std::int64_t>(10'000'000'000 / baud_ + 1) * static_cast<std::int64_t>(bytes));
 }
@@ -119,7 +119,7 @@ void StreamLink::connect() {
 }
 
 void StreamLink::say_hello() {
-  // The end closes what a client before may have left on a terminal.
+  // The kEnd ends a partial frame that an earlier client may have left on a terminal.
   const std::string hello = fmt::format("{}trammel 1{}{}\n", static_cast<char>(frames::kEnd),
                                         hello_->token.empty() ? "" : " ", hello_->token);
   stream_->write(reinterpret_cast<const std::uint8_t*>(hello.data()), hello.size());
@@ -180,14 +180,14 @@ void StreamLink::sleep(nanoseconds time) {
   try {
     for (; time.count() > 0; time -= std::min(time, kLongestWait)) wait(std::min(time, kLongestWait));
   } catch (const driver::LinkError&) {
-    // Lost: the next transfer connects again, or says so.
+    // The stream is lost: the next transfer connects again, or reports it.
   }
 }
 
 void StreamLink::wait(nanoseconds time) {
   constexpr char kEnd = static_cast<char>(frames::kEnd);
   const std::string what = fmt::format("{} {}{}", time.count(), ++waits_, kEnd);
-  // The first end closes what a damaged one has left.
+  // The first kEnd ends a partial frame or a damaged wait.
   const std::string text = fmt::format("{}wait {}", kEnd, what);
   const unsigned sends = at_most(options_.answer) < options_.answer ? 1 : options_.sends;
   for (unsigned sent = 0; sent < sends; ++sent) {
@@ -198,7 +198,7 @@ void StreamLink::wait(nanoseconds time) {
   throw driver::LinkError("the server does not answer");
 }
 
-// What comes before it are late replies, for which nobody waits any more.
+// Data before `text` are late replies to requests that were given up.
 bool StreamLink::answered(const std::string& text) {
   const auto begun = steady_clock::now();
   const nanoseconds answer = at_most(options_.answer);

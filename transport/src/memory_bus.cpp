@@ -19,7 +19,7 @@ MemoryBus::MemoryBus(const std::string& path, std::uint64_t offset, bool interru
     : path_(path), calls_(calls) {
   file_ = calls_.open(path.c_str(), O_RDWR | O_SYNC | O_CLOEXEC);
   if (file_ < 0) fail("cannot open it");
-  // mmap() wants whole pages.
+  // mmap() needs page-aligned offsets.
   const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
   const std::uint64_t begin = offset / page * page;
   mapped_bytes_ = static_cast<std::size_t>(offset - begin) + card_map::kWindowBytes;
@@ -55,7 +55,7 @@ std::size_t MemoryBus::transfer(driver::Access* accesses, std::size_t count) {
 
 void MemoryBus::sleep(std::chrono::nanoseconds time) { std::this_thread::sleep_for(time); }
 
-// UIO: writing 1 enables the interrupt, which disables itself when it comes; a read of 4 bytes takes it.
+// UIO: writing 1 enables the interrupt, which is disabled automatically when it is raised. A read of 4 bytes takes it.
 bool MemoryBus::enable_interrupt() {
   const std::int32_t one = 1;
   return calls_.write(file_, &one, sizeof(one)) == static_cast<ssize_t>(sizeof(one));

@@ -17,7 +17,7 @@
 namespace trammel::transport {
 namespace {
 
-// A terminal's server side, while it is open.
+// The server side of a terminal.
 class Master {
  public:
   Master() : file_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
@@ -26,7 +26,8 @@ class Master {
       fail();
     }
     name_ = name;
-    // Bytes as they are, also before the client has said so. Its end is closed again: an open one is a client.
+    // Sets raw mode before any client does. The client end is closed again, because an open one would count as a
+    // client.
     const int client = ::open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
     termios settings{};
     const bool raw = client >= 0 && ::tcgetattr(client, &settings) == 0 &&
@@ -45,15 +46,15 @@ class Master {
 
   int file() const { return file_; }
   const std::string& name() const { return name_; }
-  // A client has come: those who open and close the terminal from here on are counted.
+  // Starts the count of opens and closes of the terminal for a new client.
   void begin_client() {
     clients_ = 0;
     all_have_closed();
     clients_ = std::max(clients_, 1);
   }
-  // Whether, since it was asked last, there was a moment in which nobody had the terminal open. A hang-up does not show
-  // that where the next one has opened it before the server looked; the order of opening and closing does. Several
-  // openings or closings in a row may come as one.
+  // Whether, since the last call, the terminal was closed by all clients at some time. A hang-up would not show this if
+  // the next client opened the terminal before the server polled it; the order of opens and closes does. inotify may
+  // merge several opens or closes in a row into one event.
   bool all_have_closed() {
     alignas(inotify_event) char events[4096];
     bool closed = false;
@@ -68,7 +69,7 @@ class Master {
     }
     return closed;
   }
-  // Somebody has the other end open, or has left bytes.
+  // Whether a client has the other end open, or has left bytes.
   bool has_client() const {
     pollfd entry{file_, POLLIN, 0};
     return ::poll(&entry, 1, 0) == 0 || (entry.revents & POLLHUP) == 0 || (entry.revents & POLLIN) != 0;
@@ -80,8 +81,8 @@ class Master {
   }
 
   int file_;
-  int watch_ = -1;   // of openings and closings
-  int clients_ = 0;  // that have the terminal open
+  int watch_ = -1;   // inotify: opens and closes of the terminal
+  int clients_ = 0;  // clients that have the terminal open
   std::string name_;
 };
 
@@ -118,7 +119,7 @@ class TerminalStream final : public ByteStream {
 class Terminal final : public Listener {
  public:
   std::unique_ptr<ByteStream> accept() override {
-    // One client at a time: the stream of the one before is gone when the server has let go of it.
+    // One client at a time: the previous stream no longer exists once the server has closed it.
     if (master_.use_count() != 1 || !master_->has_client()) return nullptr;
     return std::make_unique<TerminalStream>(master_);
   }

@@ -16,11 +16,11 @@ using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kWorldHelloTime = 5s;
-constexpr std::size_t kLongestAnswer = 64 * 1024;  // bytes: some hundred times that of the default world
+constexpr std::size_t kLongestAnswer = 64 * 1024;  // bytes: some hundred times the answer of the default world
 
 bool begins_with(const std::string& text, const std::string& with) { return text.rfind(with, 0) == 0; }
 
-// What another program has sent, fit for a terminal.
+// Text from another program, made safe for a terminal.
 std::string printable(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
@@ -55,10 +55,10 @@ void ServedWorld::say_hello(const std::string& token) {
                               : fmt::format("{}: what answers is no `trammel serve` of this version", peer));
 }
 
-// Up to the end of the line.
+// Reads up to the end of the line.
 std::string ServedWorld::read_answer(std::chrono::milliseconds longest) {
   const auto until = steady_clock::now() + longest;
-  // Whatever ends this but a line leaves a stream on which the next line would answer another request.
+  // If this call ends without a line, the next line would answer the wrong request; so the stream is then dropped.
   std::unique_ptr<ByteStream> stream = std::move(stream_);
   while (came_.find('\n') == std::string::npos) {
     if (driver::interrupted()) throw driver::InterruptedError("interrupted while the machine was asked");

@@ -16,9 +16,10 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// spidev takes 4096 bytes at once unless it is told otherwise; a request is shorter.
+// spidev's default limit per transfer is 4096 bytes; a request is shorter than this value.
 constexpr std::size_t kLongestExchange = 2048;
-// Of a receive, so that it is not long where the card is quick; a reply without words is 36 bytes long and more.
+// Bytes per exchange of receive(): short, so that a fast card's answer is seen early; a reply without words has at
+// least 36 bytes.
 constexpr std::size_t kListen = 48;
 
 }  // namespace
@@ -51,7 +52,7 @@ void SpiLink::send(const std::uint8_t* bytes, std::size_t count) {
   }
 }
 
-// One exchange at least, so that a longest wait of 0 is a look.
+// Makes at least one exchange, so that a longest wait of 0 is a poll.
 std::size_t SpiLink::receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) {
   constexpr auto kFill = [] {
     std::array<std::uint8_t, kListen> fill{};
@@ -69,7 +70,7 @@ std::size_t SpiLink::receive(std::uint8_t* bytes, std::size_t room, nanoseconds 
   return count;
 }
 
-// Ends that only fill are left out, so that silence is nothing.
+// Drops repeated kEnd bytes, which are only fill, so that an idle card yields no bytes.
 void SpiLink::exchange(const std::uint8_t* bytes, std::size_t count) {
   std::array<std::uint8_t, kLongestExchange> received{};
   spi_ioc_transfer transfer{};

@@ -16,7 +16,7 @@ bool wait_for_file(int file, short events, std::chrono::nanoseconds longest) {
     const auto whole = std::chrono::ceil<milliseconds>(std::min<std::chrono::nanoseconds>(left, std::chrono::hours(1)));
     const int ready = ::poll(&entry, 1, static_cast<int>(whole.count()));
     if (ready > 0) return true;
-    if (ready < 0 && errno != EINTR) return true;  // what is wrong shows at the call that follows
+    if (ready < 0 && errno != EINTR) return true;  // the following call on the file reports the error
     if (left.count() == 0) return false;
   }
 }

@@ -4,7 +4,8 @@
 
 namespace trammel::transport {
 
-// Until poll() tells of `events` or of an error, at most `longest`, rounded up to milliseconds; false for neither.
+// Waits until poll() reports `events` or an error, for at most `longest`, rounded up to milliseconds; false if neither
+// came.
 bool wait_for_file(int file, short events, std::chrono::nanoseconds longest);
 
 }  // namespace trammel::transport

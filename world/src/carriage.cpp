@@ -21,7 +21,7 @@ void Carriage::advance(double seconds) {
 
 std::int64_t Carriage::place() const { return std::llround(motor_.position()); }
 
-// The way of n steps, each of which adds to the speed first: v n t + a t^2 n (n + 1) / 2.
+// Distance of n steps, each of which first adds to the speed: v n t + a t^2 n (n + 1) / 2.
 std::uint64_t Carriage::steps_short_of(std::int64_t edge, double seconds) const {
   constexpr double kMost = 1e12;
   const double way = std::abs(static_cast<double>(edge) - position()) - 2 * Motor::kAtPlace;

@@ -8,7 +8,7 @@ namespace trammel::world {
 
 namespace {
 
-// SplitMix64 (Steele, Lea, Flood 2014): good numbers from any seed.
+// SplitMix64 (Steele, Lea, Flood 2014): good random numbers from any seed.
 std::uint64_t random_number(std::uint64_t& state) {
   state += 0x9E3779B97F4A7C15U;
   std::uint64_t x = state;
@@ -39,7 +39,7 @@ void Contact::set(bool pressed, std::uint64_t clock) {
   plan_bounces(clock);
 }
 
-// An even number of further changes, so that the last one leaves what the first one made.
+// Plans an even number of further changes, so that the last one restores the level of the first.
 void Contact::plan_bounces(std::uint64_t clock) {
   next_ = 0;
   count_ = longest_ == 0 ? 0 : 2 * bounces_;

@@ -73,7 +73,7 @@ void EngineInWorld::reset() {
   catch_up();
   const std::uint64_t before = time();
   engine_->reset();
-  constexpr std::uint64_t kReset = 2;  // clocks that it takes
+  constexpr std::uint64_t kReset = 2;  // clocks that a reset takes
   before_reset_ = before + kReset - std::min(before + kReset, engine_->cycles());
   catch_up();
 }

@@ -1,4 +1,4 @@
-// One line of a script. Internal to the library.
+// One line of a script of events. Internal to the library.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace trammel::world {
 
-// "at 1.5 s press estop". Throws WorldError at that place.
+// Parses "at 1.5 s press estop". Throws WorldError with file and line.
 Event parse_event(const std::string& text, const std::string& file, std::size_t line, const Description& world);
 
 }  // namespace trammel::world

@@ -42,7 +42,8 @@ Motor::Motor(const MotorParameters& p) {
   }
 }
 
-// Speed first, then the place by the new speed: that keeps the energy of a rotor that swings.
+// Integrates the speed first, then the position with the new speed (symplectic Euler): this conserves the energy of a
+// rotor that oscillates.
 void Motor::advance(double seconds) {
   const double behind = lag();
   largest_lag_ = std::max(largest_lag_, std::abs(behind));

@@ -55,7 +55,7 @@ std::optional<std::size_t> axis_of(const std::string& word, const World& world) 
   return std::nullopt;
 }
 
-// "X > 40", "steps > 2000".
+// Parses "X > 40" or "steps > 2000".
 Request::Condition parse_condition(const std::vector<std::string>& words, const World& world) {
   Request::Condition condition;
   if (words.size() != 3 || (words[1] != ">" && words[1] != "<")) throw std::invalid_argument(kRequestForm);
@@ -72,7 +72,7 @@ Request::Condition parse_condition(const std::vector<std::string>& words, const 
   return condition;
 }
 
-// The list and what is pressed of it.
+// The JSON of all switches and buttons, and the names of the pressed ones.
 struct Lists {
   std::vector<std::string> switches;
   std::vector<std::string> buttons;

@@ -72,7 +72,7 @@ std::vector<Table> Table::tables(const char* key) {
   if (value == nullptr) return result;
   const Table outer(file_, full(key), *value);
   for (const auto& [name, inner] : value->as_table()) result.emplace_back(file_, outer.full(name), inner);
-  // In the file's order, which toml11's table does not keep.
+  // Sorts by line, because toml11's table does not keep the file's order.
   std::sort(result.begin(), result.end(), [](const Table& a, const Table& b) { return a.line() < b.line(); });
   return result;
 }

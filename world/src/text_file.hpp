@@ -1,12 +1,12 @@
-// Texts that a user names. Internal to the library.
+// Text files named by the user. Internal to the library.
 #pragma once
 
 #include <string>
 
 namespace trammel::world {
 
-// Of a file or a pipe. Throws WorldError: it cannot be read, or is longer than kLongestWorldText. `what` it should be,
-// for the message.
+// Reads a file or a pipe. Throws WorldError if it cannot be read or is longer than kLongestWorldText. `what`: the kind
+// of file, for the message.
 std::string text_of_file(const std::string& path, const char* what);
 
 }  // namespace trammel::world

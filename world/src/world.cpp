@@ -41,7 +41,7 @@ void World::run_to(std::uint64_t clock) {
 }
 
 std::uint64_t World::quiet_until() const {
-  constexpr double kWatch = 1e-3;  // s: a drive that watches its motor looks so often
+  constexpr double kWatch = 1e-3;  // s, interval at which a drive monitors its motor
   std::uint64_t until = std::min(contact_due_, power_due_);
   if (next_event_ < events_.size()) until = std::min(until, events_[next_event_].clock);
   if (watches_) until = std::min(until, now_ + static_cast<std::uint64_t>(kWatch * clock_hz_));
@@ -87,7 +87,7 @@ void World::set(std::size_t button, bool pressed) {
   show_pins();
 }
 
-// A second press of a button that is down does not begin its delay anew.
+// A second press of a button that is already pressed does not restart its delay.
 void World::time_power(Button& button, bool pressed) {
   if (!button.description.cuts_power || pressed == button.contact.pressed()) return;
   const auto delay = static_cast<std::uint64_t>(button.description.power_delay * clock_hz_);

@@ -84,7 +84,7 @@ AxisDescription read_axis(Table& table, Reading& reading) {
 
 }  // namespace
 
-// The axes in the card's order; an entry card_axis names another one.
+// Axes are in the card's order, unless the entry card_axis selects another axis of the card.
 void read_axes(Table& root, Reading& reading) {
   std::vector<Table> tables = root.tables("axis");
   if (tables.empty()) root.refuse("no axis: at least one table [axis.x]");

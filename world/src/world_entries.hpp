@@ -11,13 +11,14 @@
 
 namespace trammel::world {
 
-// What is in a file, and where: for messages about the whole.
+// The contents of a file with the lines of its parts, for messages about the whole.
 struct Reading {
   Description world;
-  std::vector<std::pair<std::string, std::size_t>> lines;  // of "switch x_minus", "axis X"
+  std::vector<std::pair<std::string, std::size_t>> lines;  // name of the part ("switch x_minus", "axis X") and line
 };
 
-// Each throws WorldError. The axes come first, and the events last: they name what is there.
+// Each throws WorldError. Call read_axes() first and read_events() last, because other entries refer to axes, and
+// events to buttons.
 void read_axes(Table& root, Reading& reading);
 void read_switch(Table& table, Reading& reading);
 void read_button(Table& table, Reading& reading);

@@ -14,7 +14,7 @@ namespace trammel::world {
 
 namespace {
 
-// Brackets and dots that a reader which recurses would run out of stack on.
+// Refuses texts whose nesting would exhaust the stack of the recursive parser.
 void refuse_depth(const std::string& text, const std::string& name) {
   constexpr std::ptrdiff_t kMost = 2000;
   const auto count = [&](char c) { return std::count(text.begin(), text.end(), c); };
@@ -30,7 +30,7 @@ toml::value parse_toml(const std::string& text, const std::string& name) {
   try {
     return toml::parse(stream, name);
   } catch (const toml::syntax_error& error) {
-    // Several lines; the first says what.
+    // The message has several lines; the first one contains the reason.
     const std::string what = error.what();
     const std::string first = what.substr(0, what.find('\n'));
     const auto colon = first.rfind(": ");
@@ -41,7 +41,7 @@ toml::value parse_toml(const std::string& text, const std::string& name) {
   }
 }
 
-// What no part of the file can see by itself is found when a world is made of it.
+// Makes a World to find errors that concern several parts of the file.
 void check_whole(const Reading& reading, const std::string& name) {
   constexpr std::uint32_t kAnyClock = 1'000'000;
   try {

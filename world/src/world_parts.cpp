@@ -1,4 +1,4 @@
-// How a World is made of its description.
+// Construction of a World from its description.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -22,7 +22,7 @@ std::uint64_t clocks_at(std::uint64_t nanoseconds, std::uint32_t clock_hz) {
   return nanoseconds / kSecond * clock_hz + nanoseconds % kSecond * clock_hz / kSecond;
 }
 
-// What the constructor of a part throws gets the part's name.
+// Adds the part's name to an exception of its constructor.
 template <class Make>
 auto named(const std::string& name, Make make) {
   try {

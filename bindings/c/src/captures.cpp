@@ -55,7 +55,7 @@ trammel_result trammel_read_captures(trammel_card* card, trammel_capture_states*
   });
 }
 
-// The places are looked at first: a capture is cleared as it is taken.
+// The pointers are checked first, because the capture is cleared when it is taken.
 trammel_result trammel_take_capture(trammel_card* card, unsigned unit, trammel_capture* capture, bool* taken) {
   return guarded([=] {
     driver::Card& of = card_of(card);

@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// `open` makes the card; `out` is null unless it succeeds.
+// Calls `open`, which creates the card. `out` is null unless it succeeds.
 template <class Open>
 trammel_result open_card(trammel_card** out, Open open) noexcept {
   return guarded([&] {

@@ -1,4 +1,4 @@
-// What stands behind trammel.h's handle, and how exceptions become results.
+// The object behind trammel.h's handle, and the conversion of exceptions to results.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 #include "trammel/driver/stream.hpp"
 #include "trammel/sim/engine.hpp"
 
-// Steps and changes of outputs of a simulated card on their way to the caller's listeners.
+// Forwards steps and output changes of a simulated card to the caller's listeners.
 class StepForwarder final : public trammel::driver::StepSink {
  public:
   using Listener = void (*)(void* context, const trammel_step* step);
@@ -60,23 +60,24 @@ struct trammel_card {
 
   std::unique_ptr<StepForwarder> steps;  // outlives the bus that calls it
   std::shared_ptr<trammel::driver::Bus> bus;
-  trammel::sim::Engine* engine;                           // the bus, where it is a simulated card's
-  std::shared_ptr<trammel::bindings::CardInWorld> world;  // where it has a machine behind its pins
+  trammel::sim::Engine* engine;                           // the bus as an engine, if the card is simulated; else null
+  std::shared_ptr<trammel::bindings::CardInWorld> world;  // set if the card has a machine behind its pins
   trammel::driver::Card card;
-  // One of them at most: each begins the card's commands anew.
+  // At most one of them is open: each restarts the card's command numbers.
   std::optional<trammel::driver::Stream> stream;
   std::optional<trammel::driver::PositionStream> positions;
 };
 
 namespace trammel::c {
 
-// What a progress callback that gives back false ends a call with.
+// Thrown when a progress callback returns false.
 class Cancelled {};
 
-// The exception under way as a result, noted for trammel_last_error(). Only within a catch.
+// Converts the exception being handled to a result, and stores it for trammel_last_error(). Call it only within a
+// catch.
 trammel_result note_exception() noexcept;
 
-// The thread's trammel_set_interrupt(), for one call.
+// Applies the thread's trammel_set_interrupt() to one call.
 class CallInterrupts {
  public:
   CallInterrupts();
@@ -103,7 +104,7 @@ T& required(T* pointer, const char* name) {
   return *pointer;
 }
 
-// The text of `make`, cut to the room of its reader, who is looked at first.
+// Writes the text of `make` to `text`, truncated to `size`. The arguments are checked before `make` is called.
 template <class Make>
 void give_text(Make make, char* text, std::size_t size) {
   required(text, "text");
@@ -114,7 +115,7 @@ void give_text(Make make, char* text, std::size_t size) {
 
 inline driver::Card& card_of(trammel_card* card) { return required(card, "card").card; }
 
-// Throw ArgumentError for a number that is none of the enumeration's.
+// Both throw ArgumentError for a number that the enumeration does not define.
 driver::PieceClass piece_class_of(std::int32_t piece_class);
 driver::Command command_of(const trammel_command& command);
 
@@ -124,7 +125,7 @@ void check_input(driver::Card& card, unsigned input);
 trammel_status c_status(const driver::Status& status);
 trammel_snapshot c_snapshot(const driver::Snapshot& snapshot);
 
-// A card behind the caller's own functions.
+// A bus that calls the caller's functions.
 std::unique_ptr<driver::Bus> make_callback_bus(const trammel_bus& bus);
 
 }  // namespace trammel::c

@@ -1,4 +1,4 @@
-// Machine files, homing, places in mm.
+// Machine files, homing, positions in mm.
 #include <algorithm>
 
 #include "handle.hpp"

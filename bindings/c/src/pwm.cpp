@@ -1,4 +1,4 @@
-// Pulses on outputs.
+// PWM on outputs.
 #include "trammel/driver/pwm.hpp"
 
 #include <algorithm>

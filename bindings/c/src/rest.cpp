@@ -1,4 +1,4 @@
-// Where a stop has left the card.
+// The state in which a stop left the card.
 #include <algorithm>
 
 #include "handle.hpp"

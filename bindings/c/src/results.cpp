@@ -13,7 +13,7 @@ namespace {
 
 thread_local trammel_error last_error{};
 
-// Of a fixed size: where memory has run out, it can still be said.
+// The text has a fixed size, so that an error can be reported even when memory has run out.
 trammel_error& note(trammel_result result, const char* text) noexcept {
   last_error = {};
   last_error.result = result;
@@ -36,13 +36,13 @@ CallInterrupts::CallInterrupts() {
   scope_.emplace([check = interrupt_check] { return check.asked(check.context); });
 }
 
-// The driver's classes, the derived before their bases.
+// Catches the driver's classes; derived classes come before their bases.
 trammel_result note_exception() noexcept {
   try {
     throw;
   } catch (const driver::ArgumentError& error) {
     note(TRAMMEL_ARGUMENT, error.what());
-  } catch (const std::invalid_argument& error) {  // arcs and simulated cards
+  } catch (const std::invalid_argument& error) {  // thrown by arcs and simulated cards
     note(TRAMMEL_ARGUMENT, error.what());
   } catch (const driver::StoppedError& error) {
     trammel_error& noted = note(TRAMMEL_STOPPED, error.what());

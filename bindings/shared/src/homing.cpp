@@ -45,7 +45,7 @@ run::CardPlace place_in(driver::Card& card, const machine::Machine& machine) {
   return place;
 }
 
-// What machine:: throws, as an error of the driver: the callers know these.
+// Converts errors of machine:: to errors of the driver, which the callers know.
 template <class Call>
 auto as_argument(Call call) {
   try {
@@ -77,7 +77,7 @@ std::vector<run::HomedAxis> home(driver::Card& card, const machine::Machine& mac
   const std::vector<std::size_t> axes = axes_of(letters, machine);
   require_motors(card, machine);
   const gcode::Coordinates at = run::standing_at(machine, place_in(card, machine));
-  // One that is still slowing down to it, too: nothing would move, and nothing would end the wait.
+  // Also refuses a card that is still slowing down to a hold: nothing would move, and the wait would not end.
   if (card.read_status().held || card.parts().time_base.hold()) {
     throw driver::HeldError("home: the card holds: take it over, or end the hold");
   }

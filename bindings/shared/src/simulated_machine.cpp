@@ -67,7 +67,7 @@ class MachineHere final : public SimulatedMachine {
     wait(world.clock_hz() / 50);
     return read();
   }
-  // The place is looked at each millisecond of the card.
+  // Checks the condition each millisecond of card time.
   void wait_for(const world::Request::Condition& condition, const std::string& text, nanoseconds longest) {
     world::World& world = card_->world();
     const std::uint64_t most = driver::clocks_of(longest, world.clock_hz(), "longest");

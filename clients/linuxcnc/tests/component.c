@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-only
- * The component, with its module parameters within the test's reach.
+ *
+ * The component, with a setter for its module parameters.
  */
 #include "../trammel.c"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 //
-// The component `trammel` period by period, with a HAL and an owner of the test's own: no thread, no clock.
+// The component `trammel`, run period by period with a HAL and an owner inside the test: no thread, no clock.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr long kPeriod = 1'000'000;
 constexpr double kScale = 80;
-constexpr double kUnit = 16777216.0;  // of targets, per pulse
+constexpr double kUnit = 16777216.0;  // units of targets per pulse
 
 std::string joint(int n, const char* pin) {
   std::string text = "trammel.joint.00.";
@@ -26,7 +26,7 @@ std::string joint(int n, const char* pin) {
   return text + pin;
 }
 
-// Component and owner in one process. The card is where the last target was, one period later.
+// Component and owner in one process. The simulated card reaches each target one period later.
 class Component : public ::testing::Test {
  protected:
   void SetUp() override { load(); }
@@ -57,7 +57,7 @@ class Component : public ::testing::Test {
     status_.joints = 4;
   }
 
-  // The owner's turn: takes what is in the ring, publishes.
+  // The owner's turn: reads the periods in the ring, and publishes the status.
   void owner() {
     for (; region_->period_tail != region_->period_head; ++region_->period_tail) {
       last_ = region_->periods[region_->period_tail % TRAMMEL_PERIODS];
@@ -81,7 +81,7 @@ class Component : public ::testing::Test {
     ++region_->status_sequence;
   }
 
-  // One period: what LinuxCNC does between read and write is `between`.
+  // Runs one period; `between` is LinuxCNC's work between read and write.
   template <class Between>
   void period(Between between, bool with_owner = true) {
     stub::now += kPeriod;
@@ -97,7 +97,7 @@ class Component : public ::testing::Test {
   void enable(bool on) {
     for (int n = 0; n < 3; ++n) stub::bit(joint(n, "enable").c_str()) = on;
   }
-  // As LinuxCNC: the command is the feedback while the machine is off.
+  // As in LinuxCNC, the command equals the feedback while the machine is off.
   void switch_on() {
     periods(3);
     for (int n = 0; n < 3; ++n) command(n) = feedback(n);
@@ -171,7 +171,7 @@ TEST_F(Component, JointThatIsDisabledByItselfStays) {
   EXPECT_TRUE(enabled());
   EXPECT_EQ(target(0), there);
   EXPECT_NEAR(target(1), 0.2 * kScale, 1e-6);
-  // Enabled again too far away: a jump, which nobody asked for.
+  // The joint is enabled again too far away: this would be a jump.
   stub::bit(joint(0, "enable").c_str()) = true;
   periods(3);
   EXPECT_FALSE(enabled());
@@ -236,7 +236,7 @@ TEST_F(Component, LinkFallsAfterTheStatedPeriodsAndNothingMovesByItself) {
   EXPECT_NE(std::string(stub::messages()).find("does not answer"), std::string::npos);
   periods(250, false);
   periods_.clear();
-  periods(10);  // the owner is there again
+  periods(10);  // the owner runs again
   EXPECT_TRUE(stub::bit("trammel.link-ok"));
   EXPECT_FALSE(enabled());
   EXPECT_TRUE(stub::bit("trammel.fault"));
@@ -340,12 +340,12 @@ TEST_F(Component, IndexEdgeBecomesZeroWithoutAJump) {
   stub::call("trammel.read", kPeriod);
   EXPECT_FALSE(stub::bit(joint(0, "index-enable").c_str()));
   EXPECT_NEAR(feedback(0), (before - 3) / kScale, 1e-9);
-  command(0) = feedback(0) + 0.01;  // as LinuxCNC: from the feedback on
+  command(0) = feedback(0) + 0.01;  // as LinuxCNC does: continues from the feedback
   stub::call("trammel.write", kPeriod);
   owner();
   EXPECT_NEAR(target(0), before + 0.01 * kScale, 1e-6);
   EXPECT_EQ(last_->flags >> TRAMMEL_PERIOD_INDEX_SHIFT, 0U);
-  // The owner's bit is still set: an index that is asked for now is another one.
+  // The owner's bit is still set; a new request for an index means another one.
   stub::bit(joint(0, "index-enable").c_str()) = true;
   periods(1);
   EXPECT_TRUE(stub::bit(joint(0, "index-enable").c_str()));
@@ -428,7 +428,7 @@ TEST_F(Component, LatencyIsTheAgeOfTheCardsNewestPeriodAndWhatIsQueued) {
   switch_on();
   status_.ahead = 2;
   periods(3);
-  // The owner reads in the period after: one period of age, two queued, one under way.
+  // The owner reads one period later: one period of age, two queued, one under way.
   EXPECT_NEAR(stub::real("trammel.latency"), 0.004, 1e-9);
 }
 
@@ -467,7 +467,7 @@ TEST_F(Component, HoldsItsLockFromLoadingToUnloading) {
   EXPECT_TRUE(lock());
 }
 
-// The memory outlives its owner: after an update, an owner that is no more does not keep LinuxCNC from starting.
+// The memory outlives its owner: after an update, a file left by an owner that has ended does not block LinuxCNC.
 TEST_F(Component, ARegionThatAnotherVersionHasLeftBeginsAnew) {
   rtapi_app_exit();
   loaded_ = false;

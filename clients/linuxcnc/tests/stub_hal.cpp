@@ -23,7 +23,7 @@ using Function = void (*)(void*, long);
 struct Memory {
   std::map<std::string, void*> places;
   std::map<std::string, Function> functions;
-  std::deque<double> values;  // of the pins: eight bytes each, which stay where they are
+  std::deque<double> values;  // values of the pins: eight bytes each; a deque does not move them
   std::vector<std::unique_ptr<char[]>> blocks;
   std::string printed, told;
 };

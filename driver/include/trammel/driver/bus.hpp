@@ -1,5 +1,5 @@
-// The driver's only way to a card: accesses to 32-bit registers, and time. A transport (memory window, SPI, serial
-// line, simulated card) is one class derived from Bus; docs/reference/bus.md shows one.
+// The driver's only interface to a card: accesses to 32-bit registers, and time. Each transport (memory window, SPI,
+// serial line, simulated card) is a class derived from Bus; docs/reference/bus.md shows an example.
 #pragma once
 
 #include <chrono>
@@ -9,10 +9,10 @@
 
 namespace trammel::driver {
 
-// One register access. `address`: bytes within the card's 4 KiB window, a multiple of 4.
+// One register access. `address`: byte offset within the card's 4 KiB window, a multiple of 4.
 struct Access {
   std::uint32_t address = 0;
-  std::uint32_t data = 0;  // to write, or what was read
+  std::uint32_t data = 0;  // value to write, or value read
   bool write = false;
 };
 
@@ -21,36 +21,36 @@ constexpr Access write_of(std::uint32_t address, std::uint32_t data) { return {a
 
 // One connection to one card.
 //
-// Thread-safety: none; one thread at a time uses a bus and everything built upon it. Two connections to a card may be
-// used by two threads where the transport says so.
+// Thread-safety: none; one thread at a time uses a bus and everything built on it. Two threads may use two connections
+// to the same card if the transport's documentation says so.
 class Bus {
  public:
   virtual ~Bus() = default;
 
-  // Makes `count` accesses in order, none for a count of 0, and puts the data of reads in their place. Returns how many
-  // were made: fewer than `count` only if the card refused accesses[result]; none after it was made. Throws LinkError,
-  // with the transport's message, when the link fails: which accesses were made is then not known.
+  // Makes `count` accesses in order and stores the values read in `data`. A count of 0 makes none. Returns the number
+  // of accesses made. It is less than `count` only if the card refused accesses[result]; no later access was made then.
+  // Throws LinkError with the transport's message when the link fails; it is then unknown which accesses were made.
   virtual std::size_t transfer(Access* accesses, std::size_t count) = 0;
 
-  // Returns after at least `time` (>= 0): a sleep with hardware, clocks in simulation. Earlier only where the check of
-  // an InterruptScope ends the call that sleeps.
+  // Returns after at least `time` (>= 0): hardware sleeps, a simulation runs its clock. It returns earlier only if the
+  // check of an InterruptScope ends the call that sleeps.
   virtual void sleep(std::chrono::nanoseconds time) = 0;
 
-  // Whether a refusal shows in transfer(). If it does not (posted writes), transfer() returns `count`, and the driver
+  // Whether transfer() reports refusals. If it does not (posted writes), transfer() returns `count`, and the driver
   // reads the refusals from the card before it reports success.
   virtual bool reports_refusals() const = 0;
 
   // Whether the card's interrupt line reaches this transport.
   virtual bool has_interrupt() const { return false; }
 
-  // Returns when the card's interrupt is raised or after `longest`, whichever comes first; true for the interrupt. At
-  // once when it is raised already.
+  // Waits until the card's interrupt is raised, for at most `longest`. Returns true if the interrupt ended the wait.
+  // Returns at once if the interrupt is already raised.
   virtual bool wait_for_interrupt(std::chrono::nanoseconds longest) {
     sleep(longest);
     return false;
   }
 
-  // Who has made the card hold, for messages; empty if the transport does not know.
+  // Describes who put the card into its hold, for messages; empty if the transport does not know.
   virtual std::string hold_origin() const { return {}; }
 
  protected:

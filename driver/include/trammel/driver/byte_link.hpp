@@ -1,5 +1,5 @@
-// A stream of bytes to a card and back: a serial line, an SPI device, a TCP connection. It carries frames
-// (docs/reference/frames.md); FrameBus makes a Bus of it.
+// A bidirectional stream of bytes to a card: a serial line, an SPI device, a TCP connection. It carries frames
+// (docs/reference/frames.md). FrameBus implements a Bus on top of it.
 #pragma once
 
 #include <chrono>
@@ -9,27 +9,28 @@
 
 namespace trammel::driver {
 
-// One connection to one card. One thread at a time.
+// One connection to one card. Used by one thread at a time.
 class ByteLink {
  public:
   virtual ~ByteLink() = default;
 
-  // Sends all of them, or throws LinkError.
+  // Sends all bytes, or throws LinkError.
   virtual void send(const std::uint8_t* bytes, std::size_t count) = 0;
-  // Waits for at most `longest` until something has come; returns how many bytes were put into `bytes`, 0 for none.
-  // Throws LinkError when the link is gone.
+  // Waits for at most `longest` until bytes have arrived. Returns the number of bytes written to `bytes`, at most
+  // `room`; 0 if none arrived. Throws LinkError when the link is lost.
   virtual std::size_t receive(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) = 0;
-  // Begins anew: a break and the byte from which the card measures the baud rate, or a connection opened again. Drops
-  // bytes that have come and were not received. Does nothing on a link without either. Throws LinkError.
+  // Restarts the link: sends a break and the byte from which the card measures the baud rate, or reopens the
+  // connection. Drops bytes that arrived but were not received. Does nothing on a link that has neither. Throws
+  // LinkError.
   virtual void restart() = 0;
 
-  // How long so many bytes are on their way at most, there or back.
+  // Longest transmission time of `bytes` bytes, in either direction.
   virtual std::chrono::nanoseconds time_of(std::size_t bytes) const = 0;
-  // A clock that only rises, and a wait by it.
+  // A monotonic clock, and a wait measured by it.
   virtual std::chrono::nanoseconds now() const = 0;
   virtual void sleep(std::chrono::nanoseconds time) = 0;
 
-  // As of Bus.
+  // As Bus::hold_origin().
   virtual std::string hold_origin() const { return {}; }
 
  protected:

@@ -1,4 +1,4 @@
-// What a card says of its state: STATUS, REFUSAL, a snapshot, and the counters in them. Plain data and pure functions,
+// The state that a card reports: STATUS, REFUSAL, snapshots, and the counters in them. Plain data and pure functions,
 // thread-safe.
 #pragma once
 
@@ -14,8 +14,8 @@ namespace trammel::driver {
 
 // STATUS.
 struct Status {
-  bool busy = false;          // something runs or is queued
-  bool direct = false;        // a one-shot line runs
+  bool busy = false;          // something is under way or queued
+  bool direct = false;        // a one-shot line (direct move) is under way
   bool path_active = false;   // a path is under way
   bool feed_active = false;   // a feed piece is under way
   bool held = false;          // the time base's ratio is 0
@@ -23,79 +23,80 @@ struct Status {
   bool faulted = false;       // FAULT is not 0
   bool refused = false;       // REFUSAL is not 0
   bool snapshot = false;      // a snapshot is under way
-  bool incomplete = false;    // the stream stands inside a command
-  bool stopping = false;      // on its way to a stop: on a ramp, or the last pulses are made
+  bool incomplete = false;    // the stream has written part of a command
+  bool stopping = false;      // the card is stopping: it is on a ramp, or completes the last pulses
   bool geometry_low = false;  // fewer halfwords queued than the queue's watermark
-  bool feed_low = false;
-  bool probed = false;        // a probe has tripped, until clear_probe()
+  bool feed_low = false;      // the same for the feed queue
+  bool probed = false;        // a probe has tripped; cleared by clear_probe()
   bool probe_missed = false;  // probing paths ended without an edge
-  bool waiting = false;       // for an input
+  bool waiting = false;       // the card waits for an input
   bool underrun = false;      // the time base is held because the queues run dry
-  bool stale = false;         // position streaming goes on without a new period
-  bool button_hold = false;   // the feed hold button holds, until cycle start
-  bool enabled = false;       // the drives are (EnableSequence)
-  bool enable_waits = false;  // motion waits for them
-  bool settled = false;       // at a ratio of 0 or stopped by a fault, for 31 clocks: each tick taken has made its
-                              // steps, each step its pulse
+  bool stale = false;         // position streaming continues without a new period
+  bool button_hold = false;   // the feed hold input holds the card until cycle start
+  bool enabled = false;       // the drives are enabled (EnableSequence)
+  bool enable_waits = false;  // motion waits for the enable of the drives
+  // For 31 clocks, at a ratio of 0 or stopped by a fault: every tick taken has made its steps, every step its pulse.
+  bool settled = false;
 };
 
 // REFUSAL.
 struct Refusal {
   std::uint8_t reason = 0;          // value of card_map::Reason, not 0
-  std::uint8_t command_number = 0;  // of a stream command
-  std::uint32_t address = 0;        // byte address of the access
+  std::uint8_t command_number = 0;  // number of the refused stream command
+  std::uint32_t address = 0;        // byte address of the refused access
 };
 
-// State of one clock.
+// The state in one clock.
 struct Snapshot {
   std::uint64_t time = 0;                                   // clocks since reset
   Status status;                                            //
   std::uint32_t faults = 0;                                 // FAULT
-  std::uint32_t rate = 0;                                   // 2^-32 feed ticks an enabled clock
-  std::uint32_t ratio = 0;                                  // 2^-16, of the time base
+  std::uint32_t rate = 0;                                   // 2^-32 feed ticks per enabled clock
+  std::uint32_t ratio = 0;                                  // ratio of the time base, 2^-16
   std::uint32_t geometry_begun = 0;                         // commands begun from the geometry queue since the last cut
-  std::uint32_t feed_begun = 0;                             // and from the feed queue
+  std::uint32_t feed_begun = 0;                             // the same from the feed queue
   std::array<std::int32_t, card_map::kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
 };
 
-// Where the last stop has left the card, latched before it dropped anything: a fault's when every pulse has come out,
-// an abort's in its own clock.
+// The state in which the last stop left the card (area REST), latched before the stop dropped anything: for a fault,
+// after the last pulse; for an abort, in the clock of the abort.
 struct Rest {
-  std::uint64_t time = 0;            // clocks since reset; 0: no stop since then
+  std::uint64_t time = 0;            // clocks since reset; 0: no stop since the reset
   Status status;                     //
   std::uint32_t faults = 0;          // FAULT
-  std::uint32_t geometry_begun = 0;  // commands begun from the geometry queue since the cut before
-  std::uint32_t feed_begun = 0;      // and from the feed queue
-  // Ticks that the command begun last has not taken of its N (a direct move: enabled clocks of its length), 40 bits; 0
-  // where no path is under way, at a barrier too, and where it is not exact.
+  std::uint32_t geometry_begun = 0;  // commands begun from the geometry queue since the previous cut
+  std::uint32_t feed_begun = 0;      // the same from the feed queue
+  // Ticks of N that the last begun command has not taken yet, 40 bits (direct move: enabled clocks of its length). 0 if
+  // no path is under way, also at a barrier, and if exact() is false.
   std::uint64_t ticks_left = 0;
   std::array<std::int32_t, card_map::kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
 
-  // `position` is that of all ticks taken, and no pulse has come since. Of an abort in motion it is not.
+  // Whether `position` includes the steps of all ticks taken, with no pulse after it. False for an abort in motion.
   bool exact() const { return status.settled; }
 };
 
-// Pulses from one position of an axis to another. The counters wrap: for distances below 2^31.
+// Pulses from one position of an axis to another. The counters wrap; the result is correct for distances below 2^31.
 constexpr std::int32_t pulses_between(std::int32_t from, std::int32_t to) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
 }
 
-// What the card knows of where its axes stand; bit n: axis n.
+// What the card knows of the positions of its axes; bit n: axis n.
 struct Place {
-  std::uint8_t valid = 0;  // POSITION less MACHINE_ZERO says where the axis stands
-  std::uint8_t homed = 0;  // the host has found the axis's place at its switch
+  std::uint8_t valid = 0;  // POSITION - MACHINE_ZERO is the axis's position
+  std::uint8_t homed = 0;  // the host has referenced the axis at its switch
 };
 
-// A count of the card, which has 32 bits, carried on from `before`: for less than 2^32 more.
+// Extends a 32-bit counter of the card to 64 bits: the value at or after `before`. Correct if the counter advanced by
+// less than 2^32.
 constexpr std::uint64_t count_after(std::uint64_t before, std::uint32_t counter) {
   return before + (counter - static_cast<std::uint32_t>(before));
 }
 
-// Names of the fault bits, for messages: "step fault of axis 2, LIMIT (axis 0 minus)". `limit_state`: the register
-// LIMIT_STATE, 0 where it is not known. `axes`: names of the card's axes, by number; others are "axis N".
+// Names of the fault bits, for messages: "step fault of axis 2, LIMIT (axis 0 minus)". `limit_state`: value of
+// LIMIT_STATE, 0 if unknown. `axes`: names of the card's axes, by number; an axis without a name is "axis N".
 std::string describe_faults(std::uint32_t faults, std::optional<std::uint32_t> limit_state = std::nullopt,
                             const std::vector<std::string>& axes = {});
-// Name of a refusal reason and what it means.
+// Name and explanation of a refusal reason.
 std::string describe_reason(std::uint8_t reason);
 
 }  // namespace trammel::driver

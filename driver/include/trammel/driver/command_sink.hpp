@@ -1,4 +1,4 @@
-// Where commands go: the card's stream, a recorder, a counter.
+// Receiver of commands: the card's stream, a recorder, a counter.
 #pragma once
 
 #include "trammel/driver/commands.hpp"
@@ -10,7 +10,8 @@ class CommandSink {
  public:
   virtual ~CommandSink() = default;
 
-  // Takes the command, in the order to send: the feed pieces of a path before its geometry. Errors are the sink's.
+  // Takes the next command. Commands come in the order to send: the feed pieces of a path before its geometry. The sink
+  // defines its own errors.
   virtual void put(const Command& command) = 0;
 
  protected:

@@ -1,5 +1,5 @@
-// What the driver throws. Every message says what was wrong with the value, and its unit.
-// Plain values; safe to copy between threads.
+// Errors that the driver throws. Each message says what is wrong with the value, and its unit. Plain values; safe to
+// copy between threads.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The link to the card failed, or the device that answers is no longer a card: what() is the transport's own message,
-// or names the words that the driver read. Which of the accesses under way were made is not known.
+// The link to the card failed, or the device that answers is no longer a card. what() is the transport's own message,
+// or names the words that the driver read. It is unknown which of the pending accesses were made.
 class LinkError : public Error {
  public:
   using Error::Error;
@@ -30,16 +30,16 @@ class IdentificationError : public Error {
   using Error::Error;
 };
 
-// The card refused a command or an access. A fault as the reason is a FaultError.
+// The card refused a command or an access. If the reason is a fault, the driver throws FaultError instead.
 class RefusedError : public Error {
  public:
-  // Fields as latched in REFUSAL; `context` names the operation that was refused, in the message only. A reason of 0:
-  // the card did not say.
+  // The fields of REFUSAL. A reason of 0 means that the card gave none. `context` names the refused operation; it
+  // appears in the message only.
   RefusedError(std::uint8_t reason, std::uint8_t command_number, std::uint32_t address, const std::string& context);
 
   std::uint8_t reason() const { return reason_; }                  // value of card_map::Reason, or 0
-  std::uint8_t command_number() const { return command_number_; }  // mod 256; of the stream command
-  std::uint32_t address() const { return address_; }               // byte address of the access refused
+  std::uint8_t command_number() const { return command_number_; }  // of the stream command, mod 256
+  std::uint32_t address() const { return address_; }               // byte address of the access
 
  private:
   std::uint8_t reason_;
@@ -50,8 +50,8 @@ class RefusedError : public Error {
 // The card has stopped with a latched fault.
 class FaultError : public Error {
  public:
-  // `faults`: the FAULT register; its bits are named in the message, limits and drives with their axes from
-  // `limit_state`, the register LIMIT_STATE (none where it was not read). `context` as above.
+  // `faults`: the register FAULT. The message names its bits, and the axes of limits and drives from `limit_state`, the
+  // register LIMIT_STATE (nullopt if it was not read). `context` as above.
   FaultError(std::uint32_t faults, const std::string& context, std::optional<std::uint32_t> limit_state = std::nullopt);
 
   std::uint32_t faults() const { return faults_; }
@@ -62,24 +62,24 @@ class FaultError : public Error {
   std::uint32_t limit_state_;
 };
 
-// The call makes no sense in the state that the card or the stream is in; the message says what to do first.
+// The call is not valid in the present state of the card or the stream. The message says what to do first.
 class StateError : public Error {
  public:
   using Error::Error;
 };
 
-// A call that would wait for motion found the card in a hold that was there before it: nothing would move. The message
-// says who left it so, where that is known. Nothing was done; Card::take_over() ends it.
+// A call that would wait for motion found the card already in a hold, so nothing would move. The message says who set
+// the hold, if known. Nothing was done; Card::take_over() ends the hold.
 class HeldError : public StateError {
  public:
   using StateError::StateError;
 };
 
-// A call that waited ended because somebody asked for a stop on the path (Card::request_stop(), or the check of an
-// InterruptScope). The card is at rest and empty, every pulse has come out.
+// A waiting call ended because of a request for a stop on the path (Card::request_stop(), or the check of an
+// InterruptScope). The card is at rest, its queues are empty, and all pulses have been output.
 class StoppedError : public StateError {
  public:
-  // Commands begun from the geometry queue when it stopped, since the stream was opened.
+  // `geometry_begun`: commands begun from the geometry queue until the stop, since the stream was opened.
   StoppedError(std::uint32_t geometry_begun, const std::string& message)
       : StateError(message), geometry_begun_(geometry_begun) {}
 
@@ -95,14 +95,14 @@ class ArgumentError : public Error {
   using Error::Error;
 };
 
-// The check of an InterruptScope ended a wait before the card could be stopped: for an answer of a silent link (what
-// became of the request is not known), or for the end of Card::stop().
+// The check of an InterruptScope ended a wait before the card could be stopped: a wait for an answer of a silent link
+// (the fate of the request is then unknown), or for the end of Card::stop().
 class InterruptedError : public Error {
  public:
   using Error::Error;
 };
 
-// The card did not reach the state in the time allowed. Nothing was aborted.
+// The card did not reach the expected state in the time allowed. Nothing was aborted.
 class TimeoutError : public Error {
  public:
   // `waited`: card clocks.

@@ -1,5 +1,5 @@
-// How a piece of the feed profile goes: its duration, and whether it gets to its end. For time-outs, forecasts and
-// checks: floating point, so nothing of it may reach a command. Pure, thread-safe.
+// The course of a piece of the feed profile: its duration, and whether it reaches its end. For time-outs, forecasts and
+// checks. The results are floating point and must not become part of a command. Pure, thread-safe.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,15 @@
 
 namespace trammel::driver {
 
-// Enabled clocks from the piece's first tick to its last, to a few clocks and 0.1 %, as its rate, acceleration and jerk
-// make it in continuous time, never slower than its floor. The longest that a piece can say: 2^40 ticks at 2^-32.
+// Enabled clocks from the piece's first tick to its last, accurate to a few clocks and 0.1 %. Computed from rate,
+// acceleration and jerk in continuous time, never slower than the floor. The largest possible result is that of 2^40
+// ticks at a rate of 2^-32.
 double feed_clocks(const FeedCommand& piece);
 
-// Ticks that the piece has given when acceleration and jerk have brought its rate down to 0, without its floor, where
-// that is before its end: from there on it would go backwards. None where it gets there but for a thousandth, two
-// ticks, four updates at its floor and the change of an update: stops are rounded, and floors make up for that.
+// Detects a piece whose feed would reverse before its end: the number of ticks after which acceleration and jerk have
+// brought the rate, without its floor, to 0. Returns nullopt if the piece reaches its end, or nearly does: the
+// tolerance is a thousandth of its ticks, plus two ticks, plus four updates at its floor, plus the change of one
+// update. Stops are rounded, and floors compensate for that.
 std::optional<double> ticks_to_reversal(const FeedCommand& piece);
 
 }  // namespace trammel::driver

@@ -1,5 +1,5 @@
-// A Bus over a stream of bytes. Every request has a number and runs once, whatever the link does to it: a frame that
-// was damaged or lost is sent again, and a connection that broke is made anew.
+// A Bus over a stream of bytes. Every request has a number and runs exactly once, whatever happens on the link: the bus
+// repeats damaged and lost frames, and restores broken connections.
 #pragma once
 
 #include <chrono>
@@ -17,24 +17,25 @@ namespace trammel::driver {
 class FrameBus final : public Bus {
  public:
   struct Options {
-    // How long the card may take beside the bytes' own time: 600 clocks per access, and what the operating system adds.
+    // Time that the card may take to answer, in addition to the transmission of the bytes: 600 clocks per access, plus
+    // the delay of the operating system.
     std::chrono::nanoseconds answer = std::chrono::milliseconds(50);
-    unsigned sends = 4;     // of a request, before the connection is made anew
-    unsigned restarts = 3;  // of the connection, before transfer() gives up
-    // The constructor sends once, on one connection: for a link that loses nothing, on which a device that does not
-    // answer is no card.
+    unsigned sends = 4;     // transmissions of a request before the connection is restarted
+    unsigned restarts = 3;  // restarts of the connection before transfer() gives up
+    // The constructor sends one request on one connection. For a link that loses nothing, on which a device that does
+    // not answer is not a card.
     bool opens_at_once = false;
   };
 
-  // Counts of what the link did.
+  // Statistics of the link.
   struct Counts {
     std::uint64_t requests = 0;
     std::uint64_t sent_again = 0;
     std::uint64_t restarts = 0;
-    std::uint64_t strange = 0;  // whole replies to something else: late, or repeated
+    std::uint64_t strange = 0;  // valid replies to other requests: late or repeated
   };
 
-  // `link` must outlive it. Connects; throws LinkError when no card answers.
+  // Connects; throws LinkError when no card answers. `link` must outlive the object.
   explicit FrameBus(ByteLink& link) : FrameBus(link, Options()) {}
   FrameBus(ByteLink& link, const Options& options);
 
@@ -43,24 +44,26 @@ class FrameBus final : public Bus {
   bool reports_refusals() const override { return true; }
   std::string hold_origin() const override { return link_.hold_origin(); }
 
-  // After transfer() has thrown a LinkError: connects again, and says how many of its accesses were made; the data of
-  // reads among them are lost. Throws LinkError when the card does not answer, or was reset or used by another program
-  // meanwhile: then nothing is known, and the next transfer() begins anew.
+  // Call it after transfer() has thrown a LinkError: connects again, and returns the number of accesses of that
+  // transfer that were made. The data of its reads are lost. Throws LinkError when the card does not answer, or was
+  // reset or used by another program meanwhile. The number is then unknown, and the next transfer() starts a new
+  // connection.
   std::size_t resume();
 
-  // Where an answer may take longer than this (Options::answer), a transfer gives up when none has come for so long and
-  // one further request has none, either: what the card was doing has ended by then, by its watchdog. Those behind it
-  // ask once and shortly, until one is answered. 0, as in the beginning: a transfer waits as Options say.
+  // Limits the wait for an answer if Options::answer is longer than `patience`. A transfer then gives up when it had no
+  // answer for `patience` and one further request had none either; the card's watchdog has stopped the card by then.
+  // The following transfers ask once, with a short wait, until one is answered. 0 (the default): a transfer waits as
+  // Options say.
   void set_patience(std::chrono::nanoseconds patience) { patience_ = patience; }
-  // Whether the last transfer had no answer.
+  // Whether the last transfer got no answer.
   bool lost() const { return lost_; }
 
-  // What the last reply said of the card.
+  // The state of the card as reported by the last reply.
   const frames::CardState& state() const { return state_; }
   const Counts& counts() const { return counts_; }
 
  private:
-  // How often and for how long a request is tried.
+  // Repetitions of a request and the wait for each answer.
   struct Tries {
     std::chrono::nanoseconds answer;
     unsigned sends;
@@ -83,18 +86,18 @@ class FrameBus final : public Bus {
   ByteLink& link_;
   Options options_;
   std::chrono::nanoseconds patience_{0};
-  Tries tries_{};  // of the request or connection under way
+  Tries tries_{};  // limits of the request or connection under way
   bool lost_ = false;
   frames::Deframer deframer_{frames::kMaxReplyBody};
   frames::CardState state_;
   Counts counts_;
   std::uint16_t epoch_ = 0;
-  std::uint16_t number_ = 0;             // executed last, as far as replies have said
-  std::uint16_t card_last_ = 0;          // executed last, as the card said when it was connected last
-  bool went_back_ = false;               // the card's epoch, since this side has begun anew
-  std::uint16_t tag_ = 0;                // of requests without a number
-  std::size_t made_ = 0;                 // accesses of the transfer that replies have said were made
-  std::optional<frames::Request> open_;  // sent, and not known to have run or not
+  std::uint16_t number_ = 0;             // last executed request, as far as replies have shown
+  std::uint16_t card_last_ = 0;          // last executed request, as the card said at connection
+  bool went_back_ = false;               // the card's epoch has decreased since begin_anew()
+  std::uint16_t tag_ = 0;                // number of the last request outside the sequence
+  std::size_t made_ = 0;                 // accesses of the transfer reported as made
+  std::optional<frames::Request> open_;  // sent request that may or may not have run
 };
 
 }  // namespace trammel::driver

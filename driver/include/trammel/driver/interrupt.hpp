@@ -1,5 +1,5 @@
-// A check of the caller's that ends a waiting call early, made in the thread that waits: for Ctrl-C, a flag that a
-// signal handler sets, or a deadline. From another thread: Card::request_stop().
+// Checks by the caller that end a waiting call early, made in the waiting thread: for Ctrl-C, a flag that a signal
+// handler sets, or a deadline. Other threads use Card::request_stop() instead.
 #pragma once
 
 #include <chrono>
@@ -7,11 +7,11 @@
 
 namespace trammel::driver {
 
-// While one lives, calls of the thread that made it ask `asked` every 50 ms or so while they wait, until it returns
-// true. Then a call that waits for motion stops the card on the path, as by Card::request_stop(), and throws
-// StoppedError; one that waits for an answer of a link that is silent, or for Card::stop(), throws InterruptedError. So
-// does every later one that waits, as long as the scope lives. Scopes nest, and each is asked; the last one made is the
-// first to end. `asked` must not throw, and must not use the card.
+// During the lifetime of a scope, waiting calls of the thread that created it call `asked` about every 50 ms, until it
+// returns true. Then a call that waits for motion stops the card on the path, as by Card::request_stop(), and throws
+// StoppedError. A call that waits for an answer of a silent link, or for Card::stop(), throws InterruptedError. Every
+// later waiting call during the lifetime of the scope does the same. Scopes nest, and every check is called; destroy
+// them in reverse order. `asked` must not throw, and must not use the card.
 class InterruptScope {
  public:
   explicit InterruptScope(std::function<bool()> asked);
@@ -19,7 +19,7 @@ class InterruptScope {
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
 
-  // A deadline, in the host's time from now on.
+  // A check that becomes true when `time` has passed on the host's clock, from now on.
   static std::function<bool()> after(std::chrono::nanoseconds time);
 
  private:
@@ -30,17 +30,18 @@ class InterruptScope {
   bool ended_ = false;
 };
 
-// The rest is for code that waits.
+// The following declarations are for code that waits.
 
-// A silent link and a long sleep are waited for in pieces of this length, with a look at the check between them.
+// Waits on a silent link and long sleeps are split into slices of this length; the check is called between them.
 constexpr std::chrono::milliseconds kInterruptSlice{50};
 
-// Whether the call that waits is to end. False while the card is being stopped for that reason.
+// Whether the waiting call shall end. False while the card is being stopped because of the interrupt.
 bool interrupted();
-// Likewise where nothing has come for so long: then it is true, too, when a stop has waited for a second.
+// The same for a wait in which nothing has arrived for `silence`. Also true if the wait belongs to a stop because of
+// the interrupt and has lasted a second.
 bool interrupted_after(std::chrono::nanoseconds silence);
 
-// While the card is stopped because of an interrupt.
+// Marks the time during which the card is being stopped because of an interrupt.
 class StopForInterrupt {
  public:
   StopForInterrupt();

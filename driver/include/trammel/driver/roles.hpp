@@ -1,5 +1,5 @@
-// Roles of a card's inputs: what an input is for. An input may have several roles, a role several inputs. Plain data
-// and pure functions, thread-safe.
+// Roles of a card's inputs. A role is the function of an input; an input may have several roles, a role several inputs.
+// Plain data and pure functions, thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,13 @@
 
 namespace trammel::driver {
 
-// Of these each axis has one.
+// Roles that exist once per axis.
 enum class AxisRole : std::uint8_t { kLimitMinus, kLimitPlus, kHome, kIndex, kDriveFault, kInPosition };
 inline constexpr unsigned kAxisRoles = 6;
-// And of these the card has one.
+// Roles that exist once per card.
 enum class CardRole : std::uint8_t { kProbe = 48, kToolSetter, kFeedHold, kCycleStart, kSpindleAtSpeed };
 
-// A role as the card numbers it (register ROLE), 0 to 63.
+// A role by its number in the card (register ROLE), 0 to 63.
 class Role {
  public:
   // `axis`: 0 to 7.
@@ -22,7 +22,7 @@ class Role {
 
   constexpr unsigned number() const { return number_; }
   constexpr bool of_an_axis() const { return number_ < kAxisRoles * 8; }
-  constexpr unsigned axis() const { return number_ % 8; }  // of a role of an axis
+  constexpr unsigned axis() const { return number_ % 8; }  // meaningful if of_an_axis()
   friend constexpr bool operator==(Role a, Role b) { return a.number_ == b.number_; }
 
  private:
@@ -32,7 +32,7 @@ class Role {
 // "limit minus of axis 0", "feed hold".
 std::string role_name(Role role);
 
-// Roles that are active now, as the card sees them; bit n: axis n.
+// Roles that are active now, as reported by the card; bit n: axis n.
 struct ActiveRoles {
   std::uint8_t limit_minus = 0;
   std::uint8_t limit_plus = 0;
@@ -43,35 +43,35 @@ struct ActiveRoles {
   bool probe = false;
 };
 
-// Which limits and drives brought the fault that stands; bit n: axis n.
+// Limits and drives that caused the present fault; bit n: axis n.
 struct LimitState {
   std::uint8_t minus = 0;
   std::uint8_t plus = 0;
   std::uint8_t drive_fault = 0;
-  // With FAULT.soft_limit: the axis that brought it, and whether at its positive end.
+  // With FAULT.soft_limit: the axis that caused it, and whether at its positive end.
   std::uint8_t soft_axis = 0;
   bool soft_plus = false;
 };
 
-// Soft limits of an axis: the positions that it may go to, ends included, in pulses as the card counts them (modulo
-// 2^32).
+// Soft limits of an axis: the allowed positions, ends included, in pulses as the card counts them (modulo 2^32).
 struct SoftRange {
   std::int32_t minus = 0;
   std::int32_t plus = 0;
 
-  // Pulses; negative where it is no range.
+  // Pulses; negative if `plus` is below `minus`.
   std::int32_t length() const {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(plus) - static_cast<std::uint32_t>(minus));
   }
 };
 
-// How inputs stop the card. Bits of masks are axes.
+// Stops by inputs. Bits of masks are axes.
 struct InputStops {
-  std::uint8_t any_step = 0;  // while a limit of any of these is active, every step of them is one into it (CoreXY)
-  std::uint8_t shared = 0;    // one switch serves both ends
-  bool probe = false;         // the probe outside probing stops the card
-  bool tool_setter = false;   // the tool setter does
-  // On a ramp; else at once.
+  // CoreXY: while a limit of any of these axes is active, every step of each of them counts as one into the limit.
+  std::uint8_t any_step = 0;
+  std::uint8_t shared = 0;   // bit n: one switch serves both ends of axis n
+  bool probe = false;        // an edge of the probe outside probing stops the card
+  bool tool_setter = false;  // the tool setter stops the card
+  // Reactions: true stops on a ramp, false at once.
   bool limit_ramps = false;
   bool drive_fault_ramps = true;
   bool probe_ramps = true;

@@ -1,4 +1,4 @@
-// Steps of a card as something outside it sees them: what simulated cards report and recorders take. Plain data.
+// Steps of a card as seen from outside: simulated cards report them, recorders receive them. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,21 @@ struct PinStep {
 // A step of the path, before the shapers.
 struct PathStep {
   std::uint64_t command;  // number of the stream command, not wrapped; 0 in direct mode
-  std::uint64_t tick;     // of its path, from 1: feed ticks of a line, path ticks of an arc
+  std::uint64_t tick;     // tick of its path, from 1: feed ticks of a line, path ticks of an arc
   std::uint8_t axis;
   std::int8_t direction;
-  std::uint64_t cycle = 0;  // in which it comes to its shaper
+  std::uint64_t cycle = 0;  // clock in which the step reaches its shaper
 };
 
-// Outputs that changed at their pins in one clock, bit n: output n.
+// Outputs that changed at their pins in one clock; bit n: output n.
 struct OutputChange {
-  std::uint64_t cycle;  // in which they have their new levels
+  std::uint64_t cycle;  // clock in which the pins have their new levels
   std::uint16_t changed;
-  std::uint16_t levels;  // of all outputs
+  std::uint16_t levels;  // levels of all outputs
 };
 
-// Receives steps in order of time, those of one clock before its changes of outputs. Called from within bus accesses
-// and waits; must not use the bus or the card.
+// Receives steps in order of time; the steps of a clock come before its output changes. The calls come from within bus
+// accesses and waits; they must not use the bus or the card.
 class StepSink {
  public:
   virtual ~StepSink() = default;

@@ -1,15 +1,16 @@
-// The card's stream of commands: numbers them, waits for room, writes them whole.
+// The card's stream of commands: numbers the commands, waits for room, and writes each command as a whole.
 //
-// The card parts the stream into a geometry and a feed queue. A command waits here until the queue, or both queues,
-// that it goes into have room for all of it. Geometry and feed must therefore come in an order in which the card can
-// use up its queued commands while the next one waits: the commands that fill one queue must find their counterpart in
-// the other. The planner sends them in such an order; another order ends in a TimeoutError, not in a deadlock.
+// The card divides the stream into a geometry queue and a feed queue. A command waits in the host until the queue or
+// queues that it enters have room for all of it. Geometry and feed must therefore come in an order in which the card
+// can consume its queued commands while the next one waits: the commands that fill one queue must find their
+// counterparts in the other. The planner sends them in such an order. Another order ends in a TimeoutError, not in a
+// deadlock.
 //
-// Nothing is allocated for a command: words wait in a buffer of fixed size until it is full, until there is no room
-// known for the next command, or until flush().
+// put() does not allocate. Words are kept in a buffer of fixed size until it is full, until no room is known for the
+// next command, or until flush().
 //
-// Thread-safety: as of the card: a hold or an abort from another thread goes by Card::request_hold() and
-// Card::request_abort(), which put(), flush(), send() and finish() look at whenever they wait.
+// Thread-safety as of the card. Another thread holds or aborts through Card::request_hold() and Card::request_abort();
+// put(), flush(), send() and finish() serve these requests whenever they wait.
 #pragma once
 
 #include <chrono>
@@ -26,76 +27,80 @@
 namespace trammel::driver {
 
 struct StreamProgress {
-  std::uint64_t commands_sent = 0;   // since the stream was opened or restarted
+  std::uint64_t commands_sent = 0;   // commands sent since the stream was opened or restarted
   Status status;                     // of the card
-  std::uint32_t geometry_begun = 0;  // of these, commands begun from the geometry queue: paths and barriers
-  std::uint32_t feed_begun = 0;      // and from the feed queue: pieces and barriers
+  std::uint32_t geometry_begun = 0;  // of these, begun from the geometry queue: paths and barriers
+  std::uint32_t feed_begun = 0;      // of these, begun from the feed queue: pieces and barriers
 };
 
 enum class ProbeOutcome : std::uint8_t {
-  kTripped,         // the edge came on the way
-  kTrippedAlready,  // the input had the level before the first path began: nothing moved
-  kMissed,          // the paths ended without it
+  kTripped,         // the edge came during the motion
+  kTrippedAlready,  // the input had the level before the first path began; nothing moved
+  kMissed,          // the paths ended without an edge
 };
 struct ProbeResult {
   ProbeOutcome outcome = ProbeOutcome::kMissed;
-  Snapshot edge;  // of the clock after the edge showed at the card's synchronised input; zeros when missed
-  Snapshot rest;  // where the card stands now
+  // The state one clock after the edge appeared at the card's synchronised input; zeros when missed.
+  Snapshot edge;
+  Snapshot rest;  // the state at the end, at rest
 };
 
 struct StreamOptions {
-  // Pause between two looks at the card, card clocks; 0: poll_interval(). Where the bus has interrupts the stream
-  // waits for the end, and where the card has watermarks for room in its queues, without looking so often.
+  // Interval between two polls of the card, card clocks; 0: poll_interval(). If the bus has interrupts, the stream
+  // waits for the end by interrupt, and if the card also has watermarks, for room in its queues too; polls are then
+  // rare.
   std::uint64_t poll_clocks = 0;
-  // How much longer than planned (in card time) the card may be with what it has begun before it counts as hung. What
-  // was planned is known from the commands: dwells, and pieces at the ratio of their class; holds do not count.
+  // The stream throws TimeoutError when the card is later than planned by more than this (card time). The plan covers
+  // the commands begun: dwells, and pieces at the ratio of their class; holds do not count.
   std::chrono::nanoseconds margin = std::chrono::seconds(1);
-  // Called at each look while the stream waits. May throw: the exception passes through, the stream stays usable.
+  // Called at each poll while the stream waits. May throw: the exception passes through, and the stream stays usable.
   std::function<void(const StreamProgress&)> progress;
-  // Waits out a hold that stands when the stream is opened, like one that comes later.
+  // Waits out a hold that exists when the stream is opened, as it does with a later one.
   bool opens_in_hold = false;
 };
 
 class Stream final : public CommandSink {
  public:
-  // Opens the card's stream: numbers begin at 0, the queues are empty, no refusal is latched. Throws HeldError if the
-  // card stands in a hold that this program has not set, StateError if it is busy, FaultError if it is faulted,
+  // Opens the card's stream: numbers start at 0, the queues are empty, no refusal is latched. Throws HeldError if the
+  // card is in a hold that this program has not set, StateError if it is busy, FaultError if it has a fault,
   // ArgumentError for a margin that is not positive. `card` must outlive the stream.
   explicit Stream(Card& card, StreamOptions options = {});
 
-  // Takes a command to send, whole or not at all; it is written now or later. Throws ArgumentError when it does not fit
-  // its layout or what the card has (axes, engines), and for a feed piece whose jerk would reverse the feed before its
-  // end: it is not taken then, and those before it stay as they were.
+  // Accepts a command to send, as a whole or not at all, and writes it now or later. Throws ArgumentError when the
+  // command exceeds the ranges of its fields or the abilities of the card (axes, engines), and for a feed piece whose
+  // jerk would reverse the feed before its end. Such a command is not accepted; earlier ones are not affected.
   //
-  // When it has to write or to wait for room: LinkError, FaultError; TimeoutError when the card is overdue;
-  // RefusedError when it refuses a command, with the reason and the command's number (a refusal may show only at a
-  // later call, and any refused access to the card counts); StateError when it has not begun what it was sent: it was
-  // reset, or aborted by somebody else. After a RefusedError, a LinkError or a StateError the stream is closed, and
-  // what it kept back is dropped: all calls throw StateError until restart().
+  // When put() has to write or to wait for room it also throws LinkError, FaultError; TimeoutError when the card is
+  // overdue; RefusedError when the card refuses a command, with the reason and the command's number (a later call may
+  // report the refusal, and any refused access to the card counts); StateError when the card has not begun what it was
+  // sent, because it was reset, or aborted by another program. After a RefusedError, a LinkError or a StateError the
+  // stream is closed and its buffer dropped: all calls throw StateError until restart().
   void put(const Command& command) override;
 
-  // Writes what put() has kept back. Errors as in put().
+  // Writes the commands that put() has buffered. Errors as in put().
   void flush();
 
-  // put() and flush(). Of several, every one is checked before the first access to the bus.
+  // put() and flush(). The second form checks all commands before the first access to the bus.
   void send(const Command& command);
   void send(const std::vector<Command>& commands);
 
-  // Flushes and waits until all is done: the card is idle, has begun every command, and, if the last command was End,
-  // has ended. Returns the status. Errors as in put().
+  // Flushes and waits for the end: the card is idle, has begun every command, and, if the last command was End, has
+  // ended. Returns the status. Errors as in put().
   Status finish();
 
-  // Moves along `paths` (paths and the pieces of their time, and what else stands between them) until the condition's
-  // input has its level. From there the card ramps to rest along the path and drops the rest of them. Waits until
-  // everything before is done, and until the card stands; the stream goes on from there. On cards with path commands.
-  // Throws ArgumentError, before anything moves, for an input that the card lacks, no paths, or a PROBE, a PROBE_END or
-  // an END among them; else as finish(). A StateError if another program ended the probe.
+  // Probes: waits for the end of all earlier commands, then moves along `paths` until the condition's input has its
+  // level. From there the card ramps to rest along the path and drops the remaining paths. Waits until the card is at
+  // rest; the stream continues from there. `paths` contains paths, their feed pieces and any commands between them.
+  // Needs a card with path commands.
+  //
+  // Throws ArgumentError, before anything moves, for an input that the card lacks, for no paths, and for a PROBE,
+  // PROBE_END or END among them; StateError if another program ended the probe; else as finish().
   ProbeResult probe(const ProbeCommand& condition, const std::vector<Command>& paths);
 
-  // Drops the queued commands, stops the path and begins anew at number 0. Throws FaultError if it is faulted.
+  // Drops the queued commands, stops the path and restarts at number 0. Throws FaultError if the card has a fault.
   void restart();
 
-  // Number that the next command gets.
+  // Number of the next command.
   std::uint8_t next_number() const { return static_cast<std::uint8_t>(sent_ + kept_); }
   // Commands written since the stream was opened or restarted.
   std::uint64_t sent() const { return sent_; }
@@ -110,7 +115,7 @@ class Stream final : public CommandSink {
     std::uint64_t real = 0;
     PieceClass piece_class = PieceClass::kFeed;
   };
-  // Commands of one queue: how many were put, written, and begun as the card said last.
+  // Commands of one queue: accepted by put(), written, and begun according to the last poll.
   struct Count {
     std::uint64_t put = 0;
     std::uint64_t sent = 0;
@@ -141,15 +146,16 @@ class Stream final : public CommandSink {
   StreamOptions options_;
   std::uint64_t margin_clocks_;
   std::uint64_t poll_clocks_;
-  std::vector<Access> accesses_;     // kept back: the first used_; of fixed size
-  std::vector<Duration> durations_;  // of the commands of the feed queue that may be under way, by number; a ring
+  std::vector<Access> accesses_;  // buffered writes: the first used_ are valid; of fixed size
+  // Ring, by number: durations of the feed queue's commands that may be under way.
+  std::vector<Duration> durations_;
   std::size_t used_ = 0;
-  std::size_t kept_ = 0;  // commands
-  Need room_;             // known to be free: never more than the card has
+  std::size_t kept_ = 0;  // buffered commands
+  Need room_;             // room known to be free; never more than the card has
   std::uint64_t sent_ = 0;
   Count geometry_;
   Count feed_;
-  std::optional<unsigned> inputs_;  // of the card, once it was asked
+  std::optional<unsigned> inputs_;  // number of the card's inputs, once read
   bool last_is_end_ = false;
   bool broken_ = false;
 };

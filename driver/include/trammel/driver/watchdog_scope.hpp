@@ -1,4 +1,4 @@
-// The watchdog for as long as a program moves the card.
+// Sets the watchdog while a program moves the card.
 #pragma once
 
 #include <chrono>
@@ -7,12 +7,12 @@
 
 namespace trammel::driver {
 
-// From its constructor to its end, whatever ends it, the card's watchdog is set as by Card::set_watchdog(). At its end
-// the watchdog is off where the card is idle. Where it still moves, or does not answer, the watchdog stays set: it
-// stops a card that nobody watches any more. Not thread-safe.
+// The constructor sets the card's watchdog, as Card::set_watchdog(). The destructor switches it off if the card is
+// idle. If the card still moves, or does not answer, the watchdog stays set and stops the card, which no program
+// supervises any more. Not thread-safe.
 class WatchdogScope {
  public:
-  // `card` must outlive it. Errors as of Card::set_watchdog().
+  // `card` must outlive the object. Errors as of Card::set_watchdog().
   WatchdogScope(Card& card, std::chrono::nanoseconds time) : card_(card) { card_.set_watchdog(time); }
   ~WatchdogScope();
   WatchdogScope(const WatchdogScope&) = delete;

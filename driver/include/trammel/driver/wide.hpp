@@ -1,5 +1,5 @@
-// Integers of 128 bits for hosts that have none. Plain values, constexpr, safe from any thread. Arithmetic is modulo
-// 2^128, as that of unsigned integers is modulo theirs; Int128 is two's complement.
+// 128-bit integers for hosts that have none. Plain values, constexpr, safe from any thread. Arithmetic is modulo 2^128;
+// Int128 is two's complement.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +57,7 @@ class Uint128 {
   friend constexpr bool operator<=(Uint128 a, Uint128 b) { return !(b < a); }
   friend constexpr bool operator>=(Uint128 a, Uint128 b) { return !(a < b); }
 
-  // floor(a / b) bit by bit, not for where time counts; b is not 0.
+  // floor(a / b), computed bit by bit and therefore slow; b is not 0.
   friend constexpr Uint128 operator/(Uint128 a, Uint128 b) {
     Uint128 quotient;
     Uint128 rest;
@@ -94,9 +94,9 @@ class Int128 {
   // Upper half, with the sign.
   constexpr std::int64_t high() const { return static_cast<std::int64_t>(bits_.high()); }
   constexpr std::uint64_t low() const { return bits_.low(); }
-  // The lower half: the value where it fits.
+  // The lower half: the value if it fits.
   constexpr explicit operator std::int64_t() const { return static_cast<std::int64_t>(bits_.low()); }
-  // To within two roundings.
+  // Accurate to two roundings.
   constexpr explicit operator double() const {
     return static_cast<double>(high()) * 18446744073709551616.0 + static_cast<double>(low());
   }

@@ -1,4 +1,4 @@
-// CRC-32 as in Ethernet and zlib: polynomial 0x04C11DB7, lowest bit first, begun with ones, inverted at the end.
+// CRC-32 as in Ethernet and zlib: polynomial 0x04C11DB7, lowest bit first, initial value all ones, inverted at the end.
 // Check value: "123456789" gives 0xCBF43926.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace trammel::frames {
 
 class Crc32 {
  public:
-  // What the register holds after data and their CRC, lowest byte first: the same for all that is whole.
+  // The register after data followed by their CRC, lowest byte first: the same value for all undamaged data.
   static constexpr std::uint32_t kResidue = 0xDEBB20E3;
 
   void add(std::uint8_t byte);

@@ -1,5 +1,5 @@
-// The card's end of a byte stream, without time: what the frame engine does with each byte. A server that has a card,
-// and tests, take it as it is; the golden model of the engine adds its clocks. Not thread-safe.
+// The card's end of a byte stream, without time: the frame engine's response to each byte. A server with a card, and
+// tests, use it directly; the golden model of the engine adds the clocks. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ class Endpoint {
 
   explicit Endpoint(Access access, Session session = Session()) : access_(std::move(access)), session_(session) {}
 
-  // A byte from the host; the reply to a request that it ends is appended to `out`.
+  // Takes a byte from the host. If it completes a request, the reply is appended to `out`.
   void take(std::uint8_t byte, Bytes& out);
-  // A new connection: what has come of a frame is forgotten, the epoch moves on.
+  // Starts a new connection: drops an incomplete frame and increments the epoch.
   void connect();
 
   const Session& session() const { return session_; }

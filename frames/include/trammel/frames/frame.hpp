@@ -1,5 +1,5 @@
-// Requests and replies between a host and a card over a stream of bytes: docs/reference/frames.md.
-// Plain values; nothing here throws but where it says so.
+// Requests and replies between a host and a card over a stream of bytes: docs/reference/frames.md. Plain values;
+// functions throw only where their comment says so.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace trammel::frames {
 
-// A reply's data and state fill the 256 bytes that the card keeps for it.
+// Data and state of a reply fill the 256 bytes that the card reserves for it.
 constexpr std::size_t kStateWords = 5;
 constexpr std::size_t kMaxWords = (256 - 4 * kStateWords) / 4;
 constexpr std::size_t kHeaderBytes = 8;
@@ -23,12 +23,12 @@ enum class Kind : std::uint8_t { Ask = 0, Connect = 1, Read = 2, Write = 3 };
 
 struct Request {
   Kind kind = Kind::Ask;
-  bool fixed = false;      // every word at the one address, for STREAM
+  bool fixed = false;      // all words at one address, for STREAM
   std::uint8_t count = 0;  // words to read or write: 1 .. kMaxWords; 0 for Ask and Connect
   std::uint16_t number = 0;
   std::uint16_t epoch = 0;
-  std::uint16_t address = 0;        // bytes, of the first word
-  std::vector<std::uint32_t> data;  // of a write: `count` words
+  std::uint16_t address = 0;        // byte address of the first word
+  std::vector<std::uint32_t> data;  // words to write: `count`
 
   bool operator==(const Request& o) const;
 };
@@ -48,25 +48,25 @@ struct CardState {
 
 struct Reply {
   Result result = Result::Done;
-  std::uint8_t made = 0;     // words read or written; of a refused request: the index of the word refused
-  std::uint16_t number = 0;  // of the request
-  std::uint16_t last = 0;    // the number executed last
-  std::uint16_t epoch = 0;   // of the connection
+  std::uint8_t made = 0;     // words read or written; of a refused request: index of the refused word
+  std::uint16_t number = 0;  // number of the request
+  std::uint16_t last = 0;    // number of the last executed request
+  std::uint16_t epoch = 0;   // epoch of the connection
   CardState state;
-  bool has_data = false;            // the request was a read that was executed
-  std::vector<std::uint32_t> data;  // what was read: `made` words
+  bool has_data = false;            // the request was a read and was executed
+  std::vector<std::uint32_t> data;  // words read: `made`
 
   bool operator==(const Reply& o) const;
 };
 
-// Appends the frame. Throws std::invalid_argument where the words do not fit kind and count.
+// Appends the frame. Throws std::invalid_argument if the data do not match kind and count.
 void append_request(Bytes& stream, const Request& request);
 void append_reply(Bytes& stream, const Reply& reply);
 
-// A body with a good CRC as a request; nothing where its length is not that of its kind and count.
+// Parses a body with a correct CRC. Returns nullopt if its length does not match its kind and count.
 struct ReceivedRequest {
   Request request;
-  bool malformed = false;  // an unknown kind, a count or an address that no request has
+  bool malformed = false;  // unused bits set, or a count or address that no request has
 };
 std::optional<ReceivedRequest> parse_request(const Bytes& body);
 std::optional<Reply> parse_reply(const Bytes& body);

@@ -1,4 +1,5 @@
-// What a card makes of a whole frame: whether it runs, and what of it the reply says. Knows neither bytes nor time.
+// The card's response to a complete frame: whether the request runs, and what the reply contains. Independent of bytes
+// and time.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +13,17 @@ class Session {
  public:
   enum class Step : std::uint8_t { Answer, Execute };
 
-  // Takes a request. Execute: it is to run, exactly now, and its end to be told by executed(). Answer: it is not to
-  // run.
+  // Takes a request. Execute: the caller must run it now and report its end to executed(). Answer: it must not run.
   Step take(const ReceivedRequest& received);
 
-  // The words before `made` were made; `refused`: the card refused that one. `data`: what a read brought.
+  // Reports an execution. The first `made` words were made; `refused`: the card refused the next one. `data`: the words
+  // read.
   void executed(std::uint8_t made, bool refused, std::vector<std::uint32_t> data);
 
-  // The reply to the request taken last. Of a repeated one it is the reply to its execution.
+  // The reply to the request taken last. For a repeated request it is the reply to its execution.
   Reply reply(const CardState& state) const;
 
-  // A new connection, without a request: a break on the line.
+  // Starts a new connection without a request: after a break on the line.
   void connect() { ++epoch_; }
 
   std::uint16_t epoch() const { return epoch_; }
@@ -31,11 +32,11 @@ class Session {
  private:
   std::uint16_t epoch_ = 0;
   std::uint16_t last_ = 0;
-  std::uint16_t number_ = 0;  // of the request taken last
+  std::uint16_t number_ = 0;  // number of the request taken last
   Result result_ = Result::Done;
-  bool repeats_ = false;  // its reply is that of the execution kept
-  bool reads_ = false;    // what is executed reads
-  // The execution of `last_`.
+  bool repeats_ = false;  // the reply is that of the stored execution
+  bool reads_ = false;    // the request under execution is a read
+  // The stored result of executing request `last_`.
   Result kept_result_ = Result::Done;
   std::uint8_t kept_made_ = 0;
   bool kept_reads_ = false;

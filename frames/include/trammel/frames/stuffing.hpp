@@ -1,5 +1,5 @@
-// Frames in a byte stream: each ends with kEnd, which stands nowhere else (docs/reference/frames.md).
-// Plain values; not thread-safe.
+// Frames in a byte stream. Each ends with kEnd, which occurs nowhere else (docs/reference/frames.md). Plain values; not
+// thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -21,20 +21,20 @@ constexpr std::size_t kCrcBytes = 4;
 // Appends `body`, its CRC and kEnd to `stream`.
 void append_frame(Bytes& stream, const Bytes& body);
 
-// Takes a stream byte by byte and gives out the bodies of frames whose CRC is good.
+// Takes a stream byte by byte, and returns the bodies of frames whose CRC is correct.
 class Deframer {
  public:
-  // Bodies longer than `most` bytes are passed over.
+  // Bodies longer than `most` bytes are skipped.
   explicit Deframer(std::size_t most) : most_(most) {}
 
-  // True when this byte ended a frame with a good CRC; its body stands until the next call.
+  // True when this byte ended a frame with a correct CRC. Its body is valid until the next call.
   bool take(std::uint8_t byte);
   const Bytes& body() const { return body_; }
-  // Forgets what has come of a frame.
+  // Drops an incomplete frame.
   void clear();
-  // What comes up to the next kEnd is no frame.
+  // Skips all bytes up to the next kEnd.
   void pass_over() { bad_ = true; }
-  // Frames that were begun and not given out: damaged, cut or too long.
+  // Frames that were started and not returned: damaged, truncated or too long.
   std::uint64_t dropped() const { return dropped_; }
 
  private:
@@ -42,7 +42,7 @@ class Deframer {
   void add(std::uint8_t byte);
 
   std::size_t most_;
-  Bytes bytes_;  // body and CRC, as far as they have come
+  Bytes bytes_;  // body and CRC received so far
   Bytes body_;
   Crc32 crc_;
   bool escaped_ = false;

@@ -1,6 +1,6 @@
-// The simulated card (with all that is built, the arc generator too), in two engines with the same step lists, cycle by
-// cycle the same numbers: the golden model alone (here), and the Verilated card in lockstep with it (rtl_engine.hpp).
-// Both take bus accesses in the same number of clocks. One engine, one thread; several engines may live side by side.
+// The simulated card, with all engines built in (the arc generator too), in two engines: the golden model alone (here),
+// and the Verilated card in lockstep with it (rtl_engine.hpp). Both give the same step lists, identical in every cycle,
+// and take the same number of clocks per bus access. One thread per engine; several engines may exist at once.
 #pragma once
 
 #include <cstdint>
@@ -13,49 +13,49 @@
 
 namespace trammel::sim {
 
-// Pins of the simulated card: inputs, each with a filter and any roles, and outputs.
+// Pins of the simulated card: outputs, and inputs that each have a filter and any roles.
 inline constexpr unsigned kInputs = 16;
 inline constexpr unsigned kOutputs = 4;
 
 struct EngineOptions {
   unsigned axes = 4;                   // 1 .. 8
-  std::uint32_t clock_hz = 1'000'000;  // what the card says of itself; 1 cycle is 1 / clock_hz seconds
+  std::uint32_t clock_hz = 1'000'000;  // clock frequency that the card reports; 1 cycle is 1 / clock_hz seconds
   bool interrupt = false;              // the card's interrupt line reaches the bus
 };
 
-// The model can be any build of the card.
+// Options of the model alone, which can simulate any build of the card.
 struct ModelOptions : EngineOptions {
   ModelOptions(const EngineOptions& options = {}) : EngineOptions(options) {}  // NOLINT: they are options of the model
   std::uint32_t geometry_depth = 4096;                                         // halfwords
   std::uint32_t feed_depth = 2560;                                             // halfwords
-  std::optional<std::uint32_t> engines;                                        // mask; all that are built without it
+  std::optional<std::uint32_t> engines;                                        // mask of engines; nullopt: all
 };
 
-// A card on a simulated bus: the driver's Bus, with sleep() running clocks. A refused access shows in transfer(). An
-// access that is not answered within 100,000 clocks is a LinkError.
+// A card on a simulated bus: a driver::Bus whose sleep() runs clocks. transfer() reports refusals. An access that is
+// not answered within 100,000 clocks throws LinkError.
 class Engine : public driver::Bus {
  public:
-  // For tests, one access at a time. Throws driver::RefusedError, without a reason, for what the card refuses.
+  // For tests: one access each. Throw driver::RefusedError, without a reason, when the card refuses the access.
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);
 
-  virtual void wait(std::uint64_t clocks) = 0;   // runs so many clocks
-  bool wait_or_interrupt(std::uint64_t clocks);  // likewise; false: a driver::InterruptScope has ended it early
-  // Levels at the card's input pins from now on; bit n: input n. An input that has got none is unwired and stands at
-  // its inactive level: where INPUT_POLARITY inverts it, at 1.
+  virtual void wait(std::uint64_t clocks) = 0;   // runs `clocks` clocks
+  bool wait_or_interrupt(std::uint64_t clocks);  // the same; false: an InterruptScope ended it early
+  // Sets the levels at the card's input pins; bit n: input n. An input that was never set is unwired and has its
+  // inactive level: 1 if INPUT_POLARITY inverts it, else 0.
   virtual void set_inputs(std::uint32_t levels) = 0;
-  virtual void set_input(unsigned input, bool level) = 0;            // the others stay
-  virtual void set_emergency_stop(bool pressed) = 0;                 // as by the button at its pin
-  virtual void reset() = 0;                                          // as by the card's reset input
+  virtual void set_input(unsigned input, bool level) = 0;            // sets one input
+  virtual void set_emergency_stop(bool pressed) = 0;                 // presses or releases the button
+  virtual void reset() = 0;                                          // resets the card, as its reset input does
   virtual void set_sink(driver::StepSink* sink) = 0;                 // nullptr: none; not owned
   virtual std::uint64_t cycles() const = 0;                          // clocks since reset
-  virtual std::uint32_t step_pins() const = 0;                       // levels at the first pins; bit n: axis n
-  virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
+  virtual std::uint32_t step_pins() const = 0;                       // levels at the first pins (STEP, UP or A)
+  virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; nullopt: no lockstep
   virtual std::uint64_t comparisons() const = 0;                     // signals compared
-  virtual std::vector<std::int64_t> positions() const = 0;  // pulses, by axis, as the position counters have them
+  virtual std::vector<std::int64_t> positions() const = 0;           // pulses, by axis: the position counters
 };
 
-// The golden model alone, going from tick to tick. Throws std::invalid_argument for options out of range.
+// The golden model alone; it advances from tick to tick. Throws std::invalid_argument for options out of range.
 std::unique_ptr<Engine> make_model_engine(const ModelOptions& options);
 
 }  // namespace trammel::sim

@@ -1,6 +1,6 @@
 // Lockstep of one block or of the whole card: RTL and golden model get the same inputs, and every output and all
-// visible state is compared in every cycle. The first difference stops the run with everything needed to repeat it.
-// Not thread-safe; one Checker for each run.
+// visible state is compared in every cycle. The first difference ends the run with everything needed to repeat it. Not
+// thread-safe; one Checker per run.
 #pragma once
 
 #include <verilated.h>
@@ -28,7 +28,7 @@ struct Difference {
   std::uint64_t model;
 };
 
-// What happened, for the report of a mismatch that is found later.
+// Recent events, for the report of a mismatch that is detected later.
 class EventLog {
  public:
   static constexpr std::size_t kKept = 32;
@@ -36,9 +36,9 @@ class EventLog {
   // `what` must outlive the log (a string literal).
   void add(std::uint64_t cycle, const char* what, std::uint64_t value) { events_.push_back({cycle, what, value}); }
   std::size_t size() const { return events_.size(); }
-  // No mismatch is left to be found up to `cycle`: of the events that are not younger only the last kKept stay.
+  // Tells that all cycles up to `cycle` are compared: of the events up to that cycle only the last kKept are kept.
   void settle(std::uint64_t cycle);
-  // The last kKept that are not younger than `cycle`, a line each.
+  // The last kKept events up to `cycle`, one per line.
   std::string text(std::uint64_t cycle) const;
 
  private:
@@ -47,14 +47,14 @@ class EventLog {
     const char* what;
     std::uint64_t value;
   };
-  // The end of the events that are not younger than `cycle`.
+  // The end of the events up to `cycle`.
   std::vector<Event>::const_iterator end_of(std::uint64_t cycle) const;
 
   std::vector<Event> events_;
 };
 
-// Throws the Mismatch of `differences`, all of one cycle. Throws std::logic_error when there are none: RTL and model
-// were found to differ, and nobody can say in what.
+// Throws the Mismatch for `differences`, all of one cycle. Throws std::logic_error if there are none: RTL and model
+// differ in an unknown signal.
 [[noreturn]] void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed,
                        const std::vector<Difference>& differences, const std::string& events);
 
@@ -70,7 +70,7 @@ class Checker {
   Checker(const Checker&) = delete;
   Checker& operator=(const Checker&) = delete;
 
-  // Keeps the event for the report of a later mismatch; `what` must outlive the Checker (a string literal).
+  // Records an event for the report of a later mismatch. `what` must outlive the Checker (a string literal).
   void event(const char* what, std::uint64_t value = 0) {
     events_.add(cycles_, what, value);
     if (events_.size() >= 8 * EventLog::kKept) events_.settle(cycles_);
@@ -99,32 +99,33 @@ class Checker {
   EventLog events_;
 };
 
-// The seed that Simulated takes by itself: TRAMMEL_STATE_SEED from the environment, else TRAMMEL_SEED, else 1; brought
-// into the range 1 to INT_MAX, since Verilator takes a seed of its own for 0.
+// The default seed of Simulated: TRAMMEL_STATE_SEED from the environment, else TRAMMEL_SEED, else 1; mapped into the
+// range 1 to INT_MAX, because Verilator replaces 0 by a seed of its own.
 int state_seed();
 
-// In place of a seed: all bits begin with 0, as the flip-flops of an FPGA do after configuration.
+// Used instead of a seed: all bits start with 0, as the flip-flops of an FPGA do after configuration.
 inline constexpr int kZeros = 0;
 
-// Builds with TRAMMEL_RTL_COVERAGE (cmake/TrammelVerilate.cmake): adds what the context's model counted to the
-// process's sums, which are written at its end to FOLDER/TEST.PROCESS.dat. FOLDER is TRAMMEL_RTL_COVERAGE of the
-// environment; without it, and in other builds, nothing happens. From any thread.
+// Adds the coverage counts of the context's model to the process's sums, in builds with TRAMMEL_RTL_COVERAGE
+// (cmake/TrammelVerilate.cmake). The sums are written at the process's end to FOLDER/TEST.PROCESS.dat, where FOLDER is
+// the environment variable TRAMMEL_RTL_COVERAGE. Does nothing without that variable, and in other builds. Any thread
+// may call it.
 void count_coverage(VerilatedContext& context);
 
-// rising_edge.hpp; every Verilated copy has its own.
+// Defined in rising_edge.hpp, once per Verilated copy.
 template <class Dut>
 void rising_edge(Dut& dut);
 
-// Owns a Verilated model and its context. Several live side by side: eval() does not select its context by itself,
-// so every evaluation and the destructor make it the thread's current one first. One thread at a time; not always the
-// same.
+// Owns a Verilated model and its context. Several may exist at once: eval() does not select its context, so every
+// evaluation and the destructor first make it the thread's current one. One thread at a time uses an object; the thread
+// may change.
 template <class Dut>
 class Simulated {
  public:
-  // `seed`: of the random bits with which registers and inputs begin, at least 1; or kZeros.
+  // `seed`: seed of the random initial values of registers and inputs, at least 1; or kZeros.
   explicit Simulated(int seed = state_seed()) : context_(std::make_unique<VerilatedContext>()) {
     select();
-    context_->threads(1);                         // else the context starts threads that nothing uses
+    context_->threads(1);                         // otherwise the context starts threads that nothing uses
     context_->randReset(seed == kZeros ? 0 : 2);  // 2: random bits
     context_->randSeed(seed);
     dut_ = std::make_unique<Dut>(context_.get());
@@ -142,12 +143,12 @@ class Simulated {
 
   Dut* operator->() { return dut_.get(); }
   Dut& operator*() { return *dut_; }
-  // One clock period: inputs were set before the call; after it the outputs show the state after the rising edge.
+  // Runs one clock period. Set the inputs before the call; after it the outputs show the state after the rising edge.
   void clock() {
     select();
     rising_edge(*dut_);
   }
-  // The same with both edges evaluated, `at_edge` called after each.
+  // The same, evaluating both edges and calling `at_edge` after each.
   template <class AtEdge>
   void clock_by_both_edges(AtEdge at_edge) {
     select();
@@ -161,7 +162,7 @@ class Simulated {
   VerilatedContext& context() { return *context_; }
 
  private:
-  // Not in each clock anew: setting it also writes a variable that all threads share.
+  // Skips the setting if it is already right, because it writes a variable that all threads share.
   void select() {
     if (Verilated::threadContextp() != context_.get()) Verilated::threadContextp(context_.get());
   }
@@ -173,15 +174,15 @@ class Simulated {
 // The seed of a random scenario: TRAMMEL_SEED from the environment, else `fallback`.
 std::uint64_t seed_from_environment(std::uint64_t fallback);
 
-// The length of a random scenario (clocks, commands, whatever it counts): `length`, times TRAMMEL_LONG where the
-// environment has it: a factor above 0, at most 10^6; below 1 the scenario is shorter. Throws std::invalid_argument
-// when it is something else.
+// The length of a random scenario, in any unit (clocks, commands): `length` times the environment variable
+// TRAMMEL_LONG, if set. TRAMMEL_LONG is a factor above 0, at most 10^6; below 1 it shortens the scenario. Throws
+// std::invalid_argument for another value.
 std::uint64_t scaled(std::uint64_t length);
 
-// Runs a scenario of a test executable, which judges either the sound RTL or, called with --seeded-bug, a copy with a
-// seeded bug. Over sound RTL the report of a Mismatch is returned, an empty text for none. Over a seeded bug at least
-// one of the executable's scenarios must end in a Mismatch (main.cpp asks caught() at the end); those after it are not
-// run, and the text is empty.
+// Runs a scenario of a test executable. The executable tests either the correct RTL or, called with --seeded-bug, a
+// copy with a seeded bug. For the correct RTL it returns the report of a Mismatch, or an empty text for none. For a
+// seeded bug at least one of the executable's scenarios must end in a Mismatch (main.cpp checks caught() at the end);
+// later scenarios are not run, and the text is empty.
 std::string judge(const std::function<void()>& scenario);
 void expect_seeded_bug();
 const std::string& caught();  // the report of the seeded bug's mismatch; empty: none

@@ -1,5 +1,5 @@
-// The bus of a simulated card on which things happen at times of the card's own: what is scheduled for a clock, and a
-// limit of bytes a second. Both engines make the same of it, clock by clock. Not thread-safe.
+// A bus to a simulated card that adds two features in card time: events scheduled for a clock, and a limit of bytes per
+// second. Both engines behave identically, clock by clock. Not thread-safe.
 #pragma once
 
 #include <chrono>
@@ -14,16 +14,16 @@ namespace trammel::sim {
 
 class TimedBus final : public driver::Bus {
  public:
-  static constexpr unsigned kBytesOfAccess = 4;  // read or written, addresses not counted
+  static constexpr unsigned kBytesOfAccess = 4;  // data bytes per access; addresses are not counted
 
-  // `engine` must outlive the bus, and has `clock_hz` clocks a second. `bytes_per_second`: what the bus carries in card
-  // time; infinite: as fast as the card answers. Throws std::invalid_argument unless it is greater than 0.
+  // `engine` must outlive the bus; it runs `clock_hz` clocks per second. `bytes_per_second`: the capacity of the bus in
+  // card time; infinite: no limit. Throws std::invalid_argument unless it is greater than 0.
   TimedBus(Engine& engine, std::uint32_t clock_hz, double bytes_per_second);
 
-  // `event` is called when clock `cycle` since reset has come: in a wait in that clock, beside an access of the host in
-  // the clock in which that has been answered, some 20 clocks later at most. It has the card for itself, and its
-  // accesses do not count for the limit. Of several at one clock the first scheduled comes first; one whose clock has
-  // gone comes at the next access or wait. May be called from an event.
+  // Schedules `event` for clock `cycle` since reset. During a wait it is called in that clock. During an access of the
+  // host it is called in the clock in which the access has been answered, at most some 20 clocks later. The event has
+  // exclusive use of the card, and its accesses do not count for the limit. Events of one clock are called in the order
+  // of their scheduling; an event whose clock has passed is called at the next access or wait. An event may call at().
   void at(std::uint64_t cycle, std::function<void(Engine&)> event) { events_.emplace(cycle, std::move(event)); }
 
   std::size_t transfer(driver::Access* accesses, std::size_t count) override;
@@ -38,8 +38,8 @@ class TimedBus final : public driver::Bus {
 
   Engine& engine_;
   std::uint32_t clock_hz_;
-  double clocks_of_access_;  // at least
-  double free_ = 0;          // clock from which on the bus takes the next access
+  double clocks_of_access_;  // smallest number of clocks per access
+  double free_ = 0;          // clock from which the bus accepts the next access
   std::multimap<std::uint64_t, std::function<void(Engine&)>> events_;
 };
 

@@ -1,5 +1,4 @@
-// Streams of bytes between processes and to serial ports, at both ends, whatever they carry. One thread at a
-// time.
+// Streams of bytes between processes and to serial ports, for both ends, with any content. One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -14,15 +13,15 @@ class ByteStream {
  public:
   virtual ~ByteStream() = default;
 
-  // Sends all of them. Throws driver::LinkError, also when the other end takes nothing for a second.
+  // Sends all bytes. Throws driver::LinkError, also if the other end accepts nothing for a second.
   virtual void write(const std::uint8_t* bytes, std::size_t count) = 0;
-  // Waits for at most `longest` until something has come; returns how many bytes were put into `bytes`, 0 for none.
-  // Throws driver::LinkError when the other end is gone.
+  // Waits for at most `longest` until bytes have arrived. Returns the number of bytes written to `bytes`, at most
+  // `room`; 0 if none arrived. Throws driver::LinkError when the other end is gone.
   virtual std::size_t read(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) = 0;
-  // The other end, for messages.
+  // Name of the other end, for messages.
   virtual std::string peer() const = 0;
-  // Whether everybody at the other end had let go of the stream since the last call: bytes read since may be another
-  // client's.
+  // Whether all clients at the other end had closed the stream at some time since the last call. Bytes read since then
+  // may come from another client.
   virtual bool changed_hands() { return false; }
 
  protected:
@@ -33,20 +32,20 @@ class ByteStream {
 
 class SerialStream : public ByteStream {
  public:
-  // Holds the line at 0 for a quarter of a second; drops bytes that have come and were not read.
+  // Holds the line at 0 for a quarter of a second. Drops bytes that arrived but were not read.
   virtual void send_break() = 0;
 };
 
-// Where others connect to.
+// Accepts connections.
 class Listener {
  public:
   virtual ~Listener() = default;
 
-  // The client that has come, without waiting; nullptr for none.
+  // A client that has connected; nullptr for none. Does not wait.
   virtual std::unique_ptr<ByteStream> accept() = 0;
-  // Whether a client sees that the server has let go of its stream.
+  // Whether a client notices that the server has closed its stream.
   virtual bool ends_streams() const { return true; }
-  // What a client gives as --card, but for the token.
+  // The URL for a client's --card, without the token.
   virtual std::string url() const = 0;
 
  protected:
@@ -55,12 +54,12 @@ class Listener {
   Listener& operator=(const Listener&) = default;
 };
 
-// All of these throw driver::LinkError, saying what there is to do.
+// All of these throw driver::LinkError, whose message says how to solve the problem.
 std::unique_ptr<ByteStream> connect_tcp(const std::string& host, std::uint16_t port, std::chrono::milliseconds longest);
 std::unique_ptr<SerialStream> open_serial(const std::string& device, std::uint32_t baud);
-// A port of 0: one that is free.
+// Port 0 selects a free port.
 std::unique_ptr<Listener> listen_tcp(const std::string& host, std::uint16_t port);
-// A pseudo-terminal; one client at a time, who may come and go.
+// A pseudo-terminal. One client at a time; clients may come and go.
 std::unique_ptr<Listener> open_pseudo_terminal();
 
 }  // namespace trammel::transport

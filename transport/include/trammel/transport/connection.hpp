@@ -1,4 +1,4 @@
-// A bus to the card that a URL names. One thread at a time.
+// A bus to the card with a given URL. One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -20,28 +20,28 @@ class StreamLink;
 
 class Connection {
  public:
-  // Connects, or makes the simulated card of `sim:`, whose time passes while the driver sleeps. Throws
-  // driver::LinkError with what to do, and std::invalid_argument for a simulated card with axes or a clock out of
-  // range.
+  // Connects, or creates the simulated card of `sim:`, whose time passes while the driver sleeps. Throws
+  // driver::LinkError, whose message says what to do, and std::invalid_argument for a simulated card with axes or a
+  // clock out of range.
   explicit Connection(const CardUrl& url);
   ~Connection();
   Connection(Connection&&) noexcept;
   Connection& operator=(Connection&&) = delete;
 
   driver::Bus& bus() { return *bus_; }
-  // The same, where it goes by frames; nullptr for a window in memory and a simulated card.
+  // The bus as a FrameBus, if it uses frames; nullptr for a window in memory and for a simulated card.
   driver::FrameBus* frames() { return frames_; }
-  // The same, where it is a simulated card (its inputs, its steps, its reset); else nullptr.
+  // The bus as an engine, for a simulated card (its inputs, its steps, its reset); else nullptr.
   sim::Engine* engine() { return engine_; }
 
-  // False where `trammel serve` gives reading alone, for want of its token.
+  // False if `trammel serve` allows reading only, because its token was not given.
   bool may_move() const;
-  // From now on a card that is silent for so long counts as lost: its watchdog has stopped it by then. Nothing changes
-  // where the URL says how long an answer may take.
+  // Sets the time after which a silent card counts as lost, because its watchdog has stopped it by then. No effect if
+  // the URL sets the timeout of an answer.
   void set_patience(std::chrono::nanoseconds patience);
-  // Whether the last request had no answer.
+  // Whether the last request got no answer.
   bool lost() const;
-  // How often a connection to `trammel serve` that was lost has been made anew; each time the card was made to hold.
+  // Number of times that a lost connection to `trammel serve` was restored. The server made the card hold each time.
   std::uint64_t reconnections() const;
 
  private:

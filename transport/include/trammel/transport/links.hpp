@@ -1,5 +1,5 @@
-// Links to cards that speak frames: driver::FrameBus makes a bus of each. Time is the host's unless it says otherwise.
-// One thread at a time.
+// Links to cards that use frames; driver::FrameBus makes a bus of each. Time is the host's unless a comment says
+// otherwise. One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -17,71 +17,72 @@
 
 namespace trammel::transport {
 
-// Time of the machine that the program runs on.
+// A link whose time is that of the host.
 class HostTimeLink : public driver::ByteLink {
  public:
   std::chrono::nanoseconds now() const override;
   void sleep(std::chrono::nanoseconds time) override;
 };
 
-// A serial line: every connection begins with a break and the byte from which the card measures the baud rate.
+// A serial line. Every connection begins with a break and the byte from which the card measures the baud rate.
 class SerialLink final : public HostTimeLink {
  public:
   using Open = std::function<std::unique_ptr<SerialStream>()>;
 
-  // Opens; throws what `open` does.
+  // Opens the line; throws what `open` throws.
   SerialLink(Open open, std::uint32_t baud) : open_(std::move(open)), stream_(open_()), baud_(baud) {}
 
   void send(const std::uint8_t* bytes, std::size_t count) override;
   std::size_t receive(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) override;
-  // Opens a line that was lost.
+  // Reopens a line that was lost.
   void restart() override;
   std::chrono::nanoseconds time_of(std::size_t bytes) const override;
 
  private:
   Open open_;
-  std::unique_ptr<SerialStream> stream_;  // nullptr: lost
+  std::unique_ptr<SerialStream> stream_;  // null: lost
   std::uint32_t baud_;
 };
 
-// A card behind a stream that can be opened again. With a hello it is one of `trammel serve`
-// (docs/reference/card-url.md): time passes in that card, which may be slower or faster than real time. Without, frames
-// go over the stream and nothing else, such as over a bridge to a serial line.
+// A card behind a stream that can be reopened. With a hello, the server is `trammel serve`
+// (docs/reference/card-url.md): time is that of its card, which may be slower or faster than real time. Without a
+// hello, the stream carries only frames, for example over a bridge to a serial line.
 class StreamLink final : public driver::ByteLink {
  public:
   using Open = std::function<std::unique_ptr<ByteStream>()>;
   struct Hello {
-    std::string token;  // empty: for reading alone
+    std::string token;  // empty: reading only
   };
 
   struct Options {
-    // How long the link tries to open a lost stream again.
+    // Time for which the link tries to reopen a lost stream.
     std::chrono::nanoseconds reopen = std::chrono::seconds(3);
-    // How long the answer to a wait may take, of the host's time, and how often a wait is sent.
+    // Longest time of the host for the answer to a wait, and the number of times that a wait is sent.
     std::chrono::nanoseconds answer = std::chrono::seconds(20);
     unsigned sends = 2;
   };
 
-  // Connects. Throws driver::LinkError: what `open` throws, or why the server refuses.
+  // Connects. Throws what `open` throws, and driver::LinkError with the reason if the server refuses.
   StreamLink(Open open, std::optional<Hello> hello) : StreamLink(std::move(open), std::move(hello), Options()) {}
   StreamLink(Open open, std::optional<Hello> hello, const Options& options);
 
-  // Whether a server takes commands that move; otherwise it refuses every write but the order for a snapshot.
+  // Whether the server accepts commands that move the card. Otherwise it refuses every write except the request for a
+  // snapshot and the clearing of REFUSAL.
   bool may_move() const { return may_move_; }
-  // A wait that is not answered for so long ends, and a server has so long for its hello, where Options say longer.
+  // Limits the time for the answer to a wait, and for the server's hello, to `patience` if Options say longer.
   void set_patience(std::chrono::nanoseconds patience) { patience_ = patience; }
-  // How often a connection that was lost has been made anew: the server had the card hold then.
+  // Number of times that a lost connection was restored; the server made the card hold each time.
   std::uint64_t reconnections() const { return reconnections_; }
 
   void send(const std::uint8_t* bytes, std::size_t count) override;
   std::size_t receive(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) override;
-  // Opens a stream that was lost; where that has failed before, it tries once.
+  // Reopens a stream that was lost. After an earlier failure it tries once only.
   void restart() override;
   std::chrono::nanoseconds time_of(std::size_t) const override { return {}; }
   std::chrono::nanoseconds now() const override;
-  // With a hello in card time. Ends early where an InterruptScope's check ends the call.
+  // With a hello the time is card time. Ends early if the check of an InterruptScope ends the call.
   void sleep(std::chrono::nanoseconds time) override;
-  // Whom the server names in its hello.
+  // The origin of the hold that the server named in its hello.
   std::string hold_origin() const override { return hold_origin_; }
 
  private:
@@ -95,15 +96,15 @@ class StreamLink final : public driver::ByteLink {
   std::optional<Hello> hello_;
   Options options_;
   std::chrono::nanoseconds patience_{0};  // 0: as Options say
-  std::uint32_t waits_ = 0;               // each has a number, so that a late answer is not taken for the next one's
+  std::uint32_t waits_ = 0;               // number of the last wait; distinguishes a late answer from the next one's
   bool given_up_ = false;
-  std::unique_ptr<ByteStream> stream_;  // nullptr: lost
+  std::unique_ptr<ByteStream> stream_;  // null: lost
   bool may_move_ = true;
   std::string hold_origin_;
   std::uint64_t reconnections_ = 0;
 };
 
-// Linux's spidev. One exchange for what is sent; the reply comes in later ones.
+// A card behind Linux's spidev. A request is sent in one exchange; the reply arrives in later ones.
 class SpiLink final : public HostTimeLink {
  public:
   struct Options {
@@ -111,7 +112,7 @@ class SpiLink final : public HostTimeLink {
     unsigned mode = 0;  // 0 or 3
   };
 
-  // Throws driver::LinkError. `calls` must outlive it.
+  // Throws driver::LinkError. `calls` must outlive the object.
   SpiLink(const std::string& device, const Options& options, SystemCalls& calls = linux_calls());
   ~SpiLink() override;
   SpiLink(const SpiLink&) = delete;
@@ -132,7 +133,7 @@ class SpiLink final : public HostTimeLink {
   SystemCalls& calls_;
   int file_ = -1;
   std::deque<std::uint8_t> came_;
-  std::uint8_t last_;  // received
+  std::uint8_t last_;  // last byte received
 };
 
 }  // namespace trammel::transport

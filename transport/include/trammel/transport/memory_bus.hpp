@@ -1,5 +1,5 @@
-// A card whose window is mapped into a file: /dev/mem at an offset, a UIO device, a PCI device's resource. Writes are
-// posted: a refusal shows only in the card's REFUSAL register. One thread at a time.
+// A card whose window is mapped from a file: /dev/mem at an offset, a UIO device, a PCI device's resource. Writes are
+// posted: only the card's REFUSAL register shows a refusal. One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -13,8 +13,8 @@ namespace trammel::transport {
 
 class MemoryBus final : public driver::Bus {
  public:
-  // Maps the window at `offset` of the file. `interrupt`: of a UIO device (/dev/uio...) that has one it is used. Throws
-  // driver::LinkError. `calls` must outlive it.
+  // Maps the window at `offset` of the file. `interrupt`: use the interrupt of a UIO device (/dev/uio...) that has one.
+  // Throws driver::LinkError. `calls` must outlive the object.
   MemoryBus(const std::string& path, std::uint64_t offset, bool interrupt, SystemCalls& calls = linux_calls());
   ~MemoryBus() override;
   MemoryBus(const MemoryBus&) = delete;

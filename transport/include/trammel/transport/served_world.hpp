@@ -1,6 +1,6 @@
-// The machine behind a card of `trammel serve --world`, beside the program that moves the card: what it is like, and
-// its buttons. docs/user/world.md has the requests and the state's members. One object, one thread at a time; objects
-// of several threads and processes may ask one server at once.
+// The machine behind a card of `trammel serve --world`, for programs beside the one that moves the card: its state and
+// its buttons. docs/user/world.md lists the requests and the members of the state. One thread at a time uses an object;
+// objects of several threads and processes may use one server at once.
 #pragma once
 
 #include <chrono>
@@ -14,18 +14,19 @@ namespace trammel::transport {
 
 class ServedWorld {
  public:
-  // Connects. Throws driver::ArgumentError where `url` is no server's (a real card has no such machine), and
-  // driver::LinkError where the server cannot be reached, has no world, or knows another token. Without a token nothing
-  // can be pressed.
+  // Connects. Throws driver::ArgumentError if `url` is not that of a server (a real card has no such machine), and
+  // driver::LinkError if the server cannot be reached, has no world, or has another token. Without a token, presses are
+  // refused.
   explicit ServedWorld(const CardUrl& url);
-  // The same over a stream that is there.
+  // The same over an existing stream.
   ServedWorld(std::unique_ptr<ByteStream> stream, const std::string& token);
 
-  // Makes a request and gives the state behind it, a line of JSON: "state"; "press NAME" and "release NAME", whose
-  // answer comes 20 ms of the card's time later; each may have a condition behind it, "when X > 40". Throws
-  // driver::ArgumentError, with the server's words, for what it refuses; driver::LinkError where no answer has come in
-  // `longest` of real time, and where the server has gone; driver::InterruptedError by an InterruptScope. After these
-  // two the object is of no use, and a request whose condition has not come is forgotten.
+  // Makes a request and returns the resulting state, a line of JSON. Requests: "state"; "press NAME" and "release
+  // NAME", whose answer comes 20 ms of card time later; each may be followed by a condition, "when X > 40".
+  //
+  // Throws driver::ArgumentError, with the server's text, if the server refuses; driver::LinkError if no answer came
+  // within `longest` of real time, or the server is gone; driver::InterruptedError by an InterruptScope. After the last
+  // two the object is unusable, and a request whose condition was not met is dropped.
   std::string request(const std::string& text, std::chrono::milliseconds longest = std::chrono::seconds(10));
 
  private:

@@ -1,4 +1,4 @@
-// The system calls of the transports to devices, one function per call, so that a test can replace them.
+// The system calls that the transports make on devices, one function per call, so that a test can replace them.
 #pragma once
 
 #include <poll.h>
@@ -9,7 +9,7 @@
 
 namespace trammel::transport {
 
-// As the calls of these names: -1 (mmap: MAP_FAILED) and errno for a failure.
+// Each function behaves as the call of its name: a failure returns -1 (mmap: MAP_FAILED) and sets errno.
 class SystemCalls {
  public:
   virtual ~SystemCalls() = default;
@@ -19,11 +19,11 @@ class SystemCalls {
   virtual int ioctl(int file, unsigned long request, void* argument) = 0;
   virtual ssize_t read(int file, void* bytes, std::size_t count) = 0;
   virtual ssize_t write(int file, const void* bytes, std::size_t count) = 0;
-  virtual int poll(pollfd* file, int milliseconds) = 0;  // of one file
+  virtual int poll(pollfd* file, int milliseconds) = 0;  // polls one file
   virtual void* mmap(std::size_t length, int protection, int flags, int file, off_t offset) = 0;
   virtual int munmap(void* address, std::size_t length) = 0;
 
-  // A 32-bit access to what was mapped.
+  // A 32-bit access to mapped memory.
   virtual std::uint32_t load(const volatile std::uint32_t* word) = 0;
   virtual void store(volatile std::uint32_t* word, std::uint32_t value) = 0;
 
@@ -33,7 +33,7 @@ class SystemCalls {
   SystemCalls& operator=(const SystemCalls&) = default;
 };
 
-// Linux itself.
+// The calls of Linux.
 SystemCalls& linux_calls();
 
 }  // namespace trammel::transport

@@ -1,5 +1,5 @@
-// A mechanical contact: when it is pressed or released it changes, and bounces for a while, in a way that a seed
-// decides. Times are clocks of the card, counted by the caller. One object, one thread; allocates nothing.
+// A mechanical contact. When it is pressed or released it changes, and then bounces in a pattern determined by a seed.
+// Times are clocks of the card, counted by the caller. One thread per object; allocates nothing.
 #pragma once
 
 #include <array>
@@ -11,30 +11,31 @@ struct ContactParameters {
   static constexpr unsigned kMostBounces = 8;
 
   bool normally_closed = false;
-  double bounce = 1e-3;  // s, from the first change to the last at most; 0 to 1: 0 does not bounce
-  unsigned bounces = 3;  // times that it falls back; 0 to kMostBounces
+  double bounce = 1e-3;  // s, longest time from the first change to the last; 0 to 1; 0: no bouncing
+  unsigned bounces = 3;  // number of bounces; 0 to kMostBounces
 };
 
 class Contact {
  public:
   static constexpr std::uint64_t kNever = UINT64_MAX;
 
-  // Throws std::invalid_argument for what is out of range.
+  // Throws std::invalid_argument for parameters out of range.
   Contact(const ContactParameters& parameters, std::uint32_t clock_hz, std::uint64_t seed);
 
-  // It is pressed already, and at rest.
+  // Makes the contact start pressed, and not bouncing.
   void begin_pressed() {
     pressed_ = true;
     closed_ = !normally_closed_;
   }
-  // Pressed or released at `clock`: it changes at once, and some times after that. Nothing where it is so already.
+  // Presses or releases the contact at `clock`: it changes at once, and then bounces. No effect if it is in that state
+  // already.
   void set(bool pressed, std::uint64_t clock);
-  // Makes what has come until then.
+  // Applies all changes up to `clock`.
   void run_to(std::uint64_t clock);
 
   bool pressed() const { return pressed_; }
   bool closed() const { return closed_; }
-  // Clock of the next change by itself; kNever: it is at rest.
+  // Clock of the next bounce; kNever if there is none.
   std::uint64_t next_change() const { return next_ < count_ ? changes_[next_] : kNever; }
 
  private:

@@ -1,11 +1,13 @@
-// A simulated card with a machine behind its pins: the engine that it gets, golden model or Verilated card, and a world
-// that its pulses move and that sets its inputs. An Engine itself, clock by clock as the one inside.
+// A simulated card with a machine behind its pins: an engine (golden model or Verilated card), and a world that the
+// card's pulses move and that sets the card's inputs. It is itself an Engine, identical clock by clock to the one
+// inside.
 //
-// How late an input comes. In a wait the engine stops at each clock in which a pin may change, so a switch changes the
-// pin at the end of the integration step (at most 20 microseconds, or one clock where that is longer) in which its
-// carriage reaches it, and a bounce or an event in its own clock. Accesses are made one by one and are not interrupted:
-// what falls into one comes when it has been answered. So the delay is at most one integration step and one access; an
-// access to a register takes some ten clocks, and one that starts something some hundred.
+// Delay of an input. During a wait the engine stops at each clock in which a pin may change. A switch therefore changes
+// its pin at the end of the integration step in which the carriage reaches it (at most 20 microseconds, or one clock if
+// that is longer); a bounce or an event changes it in its own clock. Accesses are made one by one and are not
+// interrupted; a change during an access takes effect when the access has been answered. So the delay is at most one
+// integration step and one access. An access to a register takes some ten clocks; an access that starts a move takes
+// some hundred.
 #pragma once
 
 #include <memory>
@@ -18,8 +20,8 @@ namespace trammel::world {
 // Thread-safety: as of sim::Engine, the world included.
 class EngineInWorld final : public sim::Engine, private driver::StepSink {
  public:
-  // `world` must outlive it, is at clock 0, and has the card's clock. Throws std::invalid_argument for a world that
-  // wires inputs that the card does not have.
+  // `world` must outlive the object, be at clock 0, and have the card's clock frequency. Throws std::invalid_argument
+  // for a world that wires inputs that the card does not have.
   EngineInWorld(std::unique_ptr<sim::Engine> engine, World& world);
 
   std::size_t transfer(driver::Access* accesses, std::size_t count) override;
@@ -30,11 +32,11 @@ class EngineInWorld final : public sim::Engine, private driver::StepSink {
   std::string hold_origin() const override { return engine_->hold_origin(); }
 
   void wait(std::uint64_t clocks) override;
-  // Of inputs that the world does not wire; those that it does stay as it has them.
+  // Sets only inputs that the world does not wire; the world controls the others.
   void set_inputs(std::uint32_t levels) override;
   void set_input(unsigned input, bool level) override;
-  void set_emergency_stop(bool pressed) override;  // likewise
-  // Of the card alone: the machine stays where it is, and its time goes on.
+  void set_emergency_stop(bool pressed) override;  // no effect if the world has the button
+  // Resets the card alone: the machine stays in its position, and its time continues.
   void reset() override;
   void set_sink(driver::StepSink* sink) override { sink_ = sink; }
   std::uint64_t cycles() const override { return engine_->cycles(); }
@@ -49,15 +51,15 @@ class EngineInWorld final : public sim::Engine, private driver::StepSink {
   void outputs_changed(const driver::OutputChange& change) override;
 
   std::uint64_t time() const { return engine_->cycles() + before_reset_; }
-  void catch_up();  // the world with the card, and the pins with the world
+  void catch_up();  // advances the world to the card's time, then sets the pins from the world
   void set_pins();
 
   std::unique_ptr<sim::Engine> engine_;
   World& world_;
   std::uint32_t clock_hz_;
   driver::StepSink* sink_ = nullptr;
-  std::uint64_t before_reset_ = 0;  // clocks of the world at the card's clock 0
-  std::uint32_t levels_ = 0;        // that the card has
+  std::uint64_t before_reset_ = 0;  // world's clock at the card's clock 0
+  std::uint32_t levels_ = 0;        // levels at the card's pins
   bool emergency_stop_ = false;
 };
 

@@ -1,5 +1,5 @@
-// Who wants to know what happens in a world while it happens: a report, a test. Called from within World's functions,
-// in order of time; must not change the world.
+// Receives the events of a world as they happen: for a report, a test. World's functions call it in order of time; it
+// must not change the world.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@ class World;
 class Watcher {
  public:
   virtual ~Watcher() = default;
-  // A pin has changed: World::levels() or World::emergency_stop(). At world.now().
+  // A pin has changed (World::levels() or World::emergency_stop()) at world.now().
   virtual void pins_changed(const World& world) = 0;
-  // A step of the integration is made: carriages have moved. At world.now().
+  // An integration step was made, so carriages have moved, at world.now().
   virtual void moved(const World& world) = 0;
 };
 

@@ -1,4 +1,5 @@
-// Homing and places in mm, by a machine file, as C and Python have them. For the thread that uses the card.
+// Homing and positions in mm from a machine file, shared by the C and Python bindings. For the thread that uses the
+// card.
 #pragma once
 
 #include <functional>
@@ -11,25 +12,29 @@
 
 namespace trammel::bindings {
 
-// A path, or the built-in machine where it is empty or "default". Throws driver::ArgumentError with file and line.
+// Loads a machine file: a path; empty or "default": the built-in machine. Throws driver::ArgumentError with file and
+// line.
 machine::Machine load_machine(const std::string& file);
-// An entry as on the command line: "homing.x.search_distance=20". Throws driver::ArgumentError; nothing has changed.
+// Changes an entry, written as on the command line: "homing.x.search_distance=20". Throws driver::ArgumentError, and
+// changes nothing, for an invalid entry.
 void change_machine(machine::Machine& machine, const std::string& entry);
 
-// What `trammel run` writes to a card before it moves: step times, slew, inputs, outputs, KEEPS_PLACE. The card stands.
+// Writes the settings that `trammel run` writes before it moves: step times, slew, inputs, outputs, KEEPS_PLACE. The
+// card must be at rest.
 void configure(driver::Card& card, const machine::Machine& machine);
 
-// Configures the card, and homes the axes of these letters; empty: all that have a [homing]. Throws as run::home(),
-// driver::ArgumentError for a letter that the machine lacks, driver::HeldError on a card that holds, and
-// driver::StateError where the card's place was counted in other scales.
+// Configures the card, and homes the axes with these letters; empty: all axes that have a [homing]. Throws as
+// run::home(); driver::ArgumentError for a letter that the machine lacks, driver::HeldError on a card that holds,
+// driver::StateError if the card's place was counted in other scales.
 std::vector<run::HomedAxis> home(driver::Card& card, const machine::Machine& machine, const std::string& letters,
                                  const std::function<void(const std::string&)>& say);
 
-// Machine coordinates at which the card's axes stand, mm (degrees), by axis of the machine; zeros where no place was
-// set since the card's reset. Throws driver::StateError where the place was counted in other scales.
+// Machine coordinates of the card's axes, mm (degrees), by axis of the machine; zeros if no place was set since the
+// card's reset. Throws driver::StateError if the place was counted in other scales.
 std::vector<double> read_coordinates(driver::Card& card, const machine::Machine& machine);
 
-// Pulses of the card's axes for a way in mm (degrees), by axis of the machine; what is missing at the end is 0.
+// Converts a displacement in mm (degrees), by axis of the machine, to pulses of the card's axes. Missing entries at the
+// end are 0.
 std::vector<std::int64_t> pulses_of(const machine::Machine& machine, const std::vector<double>& way);
 
 }  // namespace trammel::bindings

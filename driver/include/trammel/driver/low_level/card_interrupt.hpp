@@ -1,4 +1,5 @@
-// A card's interrupt, where the bus has one: pauses that it ends early. Errors and thread-safety: as of Registers.
+// A card's interrupt, if the bus has one: pauses that the interrupt ends early. Errors and thread-safety as of
+// Registers.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +15,14 @@ class CardInterrupt {
   // Both must outlive the object.
   CardInterrupt(Registers& registers, const Identification& card) : registers_(registers), card_(card) {}
 
-  // Lets up to `clocks` pass: fewer only where the bus has an interrupt and the card is faulted, refuses something or
-  // gets to what `wake` asks for, by the bits of IRQ_ENABLE. True for the interrupt.
+  // Waits for `clocks`. Returns earlier, with true, if the bus has an interrupt and the card has a fault, refuses an
+  // access or reaches a condition in `wake` (bits of IRQ_ENABLE).
   bool pause(std::uint64_t clocks, std::uint32_t wake);
 
-  // Whether a wait for room in the queues can end by an interrupt.
+  // Whether an interrupt can end a wait for room in the queues.
   bool tells_of_room() const;
-  // What to wake for in pause(), so that it ends when the queues have this much room, halfwords (0: whatever they
-  // have). Sets their watermarks. Only where tells_of_room().
+  // The `wake` bits with which pause() ends when the queues have this much room, halfwords (0: any room suffices). Sets
+  // the watermarks. Requires tells_of_room().
   std::uint32_t wake_at_room(std::uint32_t geometry, std::uint32_t feed);
 
  private:
@@ -30,7 +31,7 @@ class CardInterrupt {
 
   Registers& registers_;
   const Identification& card_;
-  std::optional<std::uint32_t> enabled_;  // as written last, and so the watermarks
+  std::optional<std::uint32_t> enabled_;  // last written value; the same below
   std::optional<std::uint32_t> geometry_watermark_;
   std::optional<std::uint32_t> feed_watermark_;
 };

@@ -1,8 +1,8 @@
-// The parts of a card by duty, for code that moves it in a way of its own, as streams and one-shot lines do, and for
-// tools that show registers. Programs that use streams and lines need none of it.
+// The parts of a card by function: for code with its own way of moving the card, such as streams and one-shot lines,
+// and for tools that show registers. Programs that use streams and lines do not need them.
 //
-// Writes here pass by what Card, its streams and its lines know: a register that one of them has set keeps the value
-// that was written last. Thread-safety: as of Card; `requests` is for any thread.
+// Writes made here bypass the bookkeeping of Card, its streams and its lines: a register that one of them has set keeps
+// the value written last. Thread-safety as of Card; any thread may use `requests`.
 #pragma once
 
 #include "trammel/driver/card_timing.hpp"

@@ -1,4 +1,4 @@
-// A card's inputs and outputs. What Card says of these functions holds here. Errors and thread-safety: as of Registers.
+// A card's inputs and outputs. The functions are documented in Card. Errors and thread-safety as of Registers.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class Ports {
   void set_output_safe_cause(std::uint16_t levels, std::uint16_t change);
 
  private:
-  // `most`: bits of INPUTS or OUTPUTS.
+  // `most`: number of bits of INPUTS or OUTPUTS.
   unsigned pins_present(std::uint32_t mask, std::uint32_t shift, std::uint32_t most, const char* pins);
 
   Registers& registers_;

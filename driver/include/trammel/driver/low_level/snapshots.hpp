@@ -1,5 +1,5 @@
-// A card's snapshots: states of one clock that it latches for a reader, at a stop, at a MARK and at a probe's edge.
-// What Card says of these functions holds here. Errors and thread-safety: as of Registers.
+// A card's snapshots: the state in one clock, latched by the card on request, at a stop, at a MARK and at a probe's
+// edge. The functions are documented in Card. Errors and thread-safety as of Registers.
 #pragma once
 
 #include "trammel/driver/identification.hpp"
@@ -20,7 +20,7 @@ class Snapshots {
   std::uint32_t marks();
   void clear_probe();
   Rest rest();
-  // Of a capture that is valid: it is written already.
+  // The snapshot of a valid capture; it is already written, so this does not wait.
   Snapshot capture(card_map::Area area) { return read_without_waiting(area); }
 
  private:

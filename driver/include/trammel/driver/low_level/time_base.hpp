@@ -1,5 +1,5 @@
-// A card's time base: the ratio of each class of pieces, its slew, and the hold. What Card says of these functions
-// holds here. Errors and thread-safety: as of Registers.
+// A card's time base: the ratio of each class of pieces, its slew, and the hold. The functions are documented in Card.
+// Errors and thread-safety as of Registers.
 #pragma once
 
 #include <array>
@@ -25,28 +25,28 @@ class TimeBase {
   std::uint32_t ratio(PieceClass piece_class) const {
     return ratios_[has_classes() ? static_cast<std::size_t>(piece_class) : 0];
   }
-  // A look at the card has shown that this ratio is set, by this program or another one.
+  // Records a ratio that was read from the card, whichever program set it.
   void note_ratio(PieceClass piece_class, std::uint32_t ratio) {
     ratios_[static_cast<std::size_t>(piece_class)] = ratio;
   }
   void set_slew_time(std::chrono::nanoseconds full_scale);
 
   void set_hold(bool hold);
-  // HOLD, whoever has written it.
+  // The register HOLD, whichever program wrote it.
   bool hold() { return registers_.read(card_map::reg::kHold) != 0; }
-  // Whether set_hold(true), or a request, was this program's last word.
+  // Whether the last hold order of this program, also by a request, was a hold.
   bool holds_by_this_program() const { return own_hold_.value_or(false); }
-  // Throws HeldError if the card holds, whoever has made it.
+  // Throws HeldError if the card holds, whichever program set the hold.
   void throw_if_held(std::string_view context);
 
-  // Whether the card has a ratio for each class of pieces; else feed's is that of all.
+  // Whether the card has a ratio for each class of pieces; otherwise the ratio of kFeed applies to all.
   bool has_classes() const { return card_map::has_engine(card_.engines, card_map::engine::kClasses); }
 
  private:
   Registers& registers_;
   const Identification& card_;
   std::array<std::uint32_t, kPieceClasses> ratios_{kFullRatio, kFullRatio, kFullRatio};
-  std::optional<bool> own_hold_;  // HOLD as this object has written it last
+  std::optional<bool> own_hold_;  // value of HOLD that this object wrote last
 };
 
 }  // namespace trammel::driver

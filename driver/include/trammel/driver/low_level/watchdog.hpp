@@ -1,5 +1,5 @@
-// The card's watchdog over this program, and over its link (LINK_TIMEOUT, from map 3.5 on) with the same time: writing
-// them anew. What Card says of them holds here. Errors and thread-safety: as of Registers.
+// The card's watchdog for this program, and its watchdog for the link (LINK_TIMEOUT, from map 3.5 on) with the same
+// time; and their restarts. The functions are documented in Card. Errors and thread-safety as of Registers.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@ class Watchdog {
   Watchdog(Registers& registers, const Identification& card) : registers_(registers), card_(card) {}
 
   void set(std::chrono::nanoseconds time);
-  // The program has looked at the card: the time starts anew where a quarter of it has passed on the host, or with the
-  // kLooks-th look, since the time of a simulated card may pass faster than the host's.
+  // Call it at each poll of the card. Restarts the time if a quarter of it has passed on the host, or at the kLooks-th
+  // call since the last restart: the time of a simulated card may pass faster than the host's.
   void look();
-  // The accesses that start the times anew, or keep both off: this program is there. Those that the card has, first.
+  // The writes that restart both times, or keep both watchdogs off. The card has the first restarts() of them.
   static constexpr std::size_t kRestarts = 2;
   std::array<Access, kRestarts> restart() const;
-  std::size_t restarts() const;  // how many these are
+  std::size_t restarts() const;  // 1 or 2, by the card's map
 
  private:
   void write();
@@ -33,8 +33,8 @@ class Watchdog {
 
   Registers& registers_;
   const Identification& card_;
-  std::uint32_t units_ = 0;  // WATCHDOG, as written last by this object
-  unsigned looks_ = 0;       // since then
+  std::uint32_t units_ = 0;  // value of WATCHDOG that this object wrote last
+  unsigned looks_ = 0;       // calls of look() since the last restart
   std::chrono::steady_clock::time_point written_;
   std::chrono::nanoseconds pace_{};
 };
