@@ -48,7 +48,9 @@ class Memory : public testing::Test {
   }
   // In kB; `few` and `many`: lines.
   static long growth(std::vector<std::string> command, long few, long many) {
-    command.emplace_back();
+    command.emplace_back(fmt::format("generated:{}", few));
+    // Pages of the program's file count once they are in the system's cache, so a first run must bring them there.
+    run(command);
     Process runs[2];
     for (const bool more : {false, true}) {
       const long lines = more ? many : few;
