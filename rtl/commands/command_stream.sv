@@ -2,7 +2,7 @@
 `default_nettype none
 module command_stream #(
     parameter int          Axes          = 4,     // 1 to 8
-    parameter logic [31:0] Engines       = '1,    // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines       = '1,    // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth     = 2560
 ) (

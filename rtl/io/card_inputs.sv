@@ -4,7 +4,7 @@
 
 module card_inputs #(
     parameter int          Axes    = 4,   // 1 to 8
-    parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1,  // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          Inputs  = 4    // 1 to 32
 ) (
     input wire logic clk_i,

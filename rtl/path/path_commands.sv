@@ -3,7 +3,7 @@
 `default_nettype none
 
 module path_commands #(
-    parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1,  // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          Outputs = 4    // 1 to 16
 ) (
     input wire logic clk_i,

@@ -6,7 +6,7 @@
 `default_nettype none
 module register_access #(
     parameter int          Axes    = 4,  // 1 to 8
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,

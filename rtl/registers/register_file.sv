@@ -4,7 +4,7 @@
 module register_file #(
     parameter int          Axes          = 4,     // 1 to 8
     parameter int          Ports         = 1,     // 1 to 4
-    parameter logic [31:0] Engines       = '1,    // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines       = '1,    // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          GeometryDepth = 4096,  // halfwords, of the queues
     parameter int          FeedDepth     = 2560,
     parameter int          Inputs        = 4,     // 1 to 32, of a card with path commands
