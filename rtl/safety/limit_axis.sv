@@ -1,8 +1,8 @@
 // The limits of one axis: whether a step goes into an active switch, and how many more such steps the axis may make on
 // the ramp to the stop. A pair of bits is {positive end, negative end}.
 //
-// A shared switch serves both ends. It blocks one direction: that of the last step when the switch became active. Before
-// the first step since reset it blocks both directions.
+// A shared switch serves both ends. It blocks one direction: that of the last step when the switch became active.
+// Before the first step since reset it blocks both directions.
 `default_nettype none
 
 module limit_axis #(
