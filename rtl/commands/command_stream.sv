@@ -11,9 +11,9 @@ module command_stream #(
     input wire logic cut_i,
     // registers
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
-    input wire logic write_i,  // a word of the stream is on the setting bus, and stands until it is answered
+    input wire logic write_i,  // a word of the stream is on the setting bus, where it stays until it is answered
     input wire logic flush_i,
-    input wire logic closed_i,  // a fault stands
+    input wire logic closed_i,  // no command is accepted
     output logic [stream_answer_pkg::WIDTH-1:0] answer_o,
     output logic [queue_state_pkg::WIDTH-1:0] queue_state_o,
     // queues
