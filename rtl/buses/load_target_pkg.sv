@@ -20,7 +20,7 @@ package load_target_pkg;
   endfunction
 
   // Targets of the other units.
-  localparam logic [8:0] TICKS = {UNIT_SEQUENCER, 4'd0};  // of the path
+  localparam logic [8:0] TICKS = {UNIT_SEQUENCER, 4'd0};  // ticks of the path
   localparam logic [8:0] PRESCALE = {UNIT_PRESCALER, 4'd0};
   localparam logic [8:0] DEVIATION = {UNIT_ACCUMULATOR, 4'd0};
   localparam logic [8:0] GRADIENT_X = {UNIT_ACCUMULATOR, 4'd1};

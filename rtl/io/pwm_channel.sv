@@ -5,7 +5,7 @@
 module pwm_channel (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic stop_i,  // the channel is stopped, and starts anew in the clock after
+    input wire logic stop_i,  // the channel is stopped, and restarts in the clock after
     input wire logic [26:0] period_i,  // clocks
     input wire logic done_i,  // event: on_i is a new on-time
     input wire logic [26:0] on_i,  // clocks, at most the period

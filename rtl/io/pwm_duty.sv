@@ -13,7 +13,7 @@
 module pwm_duty (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [1:0] due_i,  // by channel: an on-time is wanted
+    input wire logic [1:0] due_i,  // by channel: requests an on-time
     input wire logic [1:0] cancel_i,  // by channel: the inputs of its on-time have changed
     input wire logic [2*pwm_order_pkg::WIDTH-1:0] orders_i,
     input wire logic [2*27-1:0] periods_i,

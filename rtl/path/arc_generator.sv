@@ -13,7 +13,7 @@ module arc_generator #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic clear_i,  // the arc is over, or cut
-    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,  // its targets only while loadable_o
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,  // this unit's targets only while loadable_o
     input wire logic start_i,  // event: the state is loaded; the axes swap three clocks later
     input wire logic tick_i,  // path tick: at most one between start_i and ready_o
     output logic [15:0] chord_word_o,

@@ -5,7 +5,7 @@
 // words where the source was. So the next half chord finds its own source in the same place, and no coordinate is
 // selected.
 //
-// A half chord has four clocks in which the source passes the funnel shifter and comes round again, a fifth clock if k
+// A half chord has four clocks in which the source passes the funnel shifter and circulates, a fifth clock if k
 // >= 16 (the funnel then needs one more word), and four clocks in which the words are added. Loads come only at rest;
 // all chains are loaded before a start.
 `default_nettype none
@@ -61,7 +61,7 @@ module chord_rotation (
   // Funnel: two words of the source, and the bit below them, which rounds. A subtraction adds the complement plus one,
   // and this one is the complement of the rounding bit: complementing the source provides both. After the last word its
   // sign is extended.
-  logic [63:0] source_q;  // X and Y in turns
+  logic [63:0] source_q;  // X and Y alternate
   logic [15:0] word_q;
   logic [15:0] before_q;
   logic        below_q;

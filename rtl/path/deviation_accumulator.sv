@@ -3,7 +3,7 @@
 // leaves the least deviation.
 //
 // A step of s in x does F += s*GX + CX/2 and GX += s*CX; a step in y does the same with GY and CY; all word by word
-// (deviation_steps). In 8 directions a second pass, in which all words come round unchanged, compares the candidates
+// (deviation_steps). In 8 directions a second pass, in which all words circulate unchanged, compares the candidates
 // for the next step (deviation_compare).
 //
 // Timing: a tick at c gives its step at c+2 and ready_o again at c+9; start_i at c gives ready_o at c+2. In 8

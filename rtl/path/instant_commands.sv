@@ -1,4 +1,4 @@
-// The effects that commands have at their place on the path beside motion: OUTPUT and MARK, and when PWM takes effect.
+// The effects that commands have at their place on the path besides motion: OUTPUT and MARK, and when PWM takes effect.
 //
 // The commands wait for the end of the path that runs as they are decoded, and then for the time that its last tick
 // takes to the axes' steps. If no path runs, they wait for that time only. No command is decoded between a path's end
@@ -21,7 +21,7 @@ module instant_commands #(
     output logic mark_o,  // event: requests a snapshot
     output logic [31:0] marks_o,  // number of MARKs that have taken effect
     // the outputs' change
-    output logic change_o,  // combinational; PWM takes effect with it
+    output logic change_o,  // combinational: the commands that wait take effect, PWM too
     output logic [Outputs-1:0] set_o,
     output logic [Outputs-1:0] clear_o
 );

@@ -1,4 +1,4 @@
-// The blocks that make steps from ticks, beside the axes' own generators: the engines and the socket that they share.
+// The blocks that make steps from ticks, besides the axes' own generators: the engines and the socket that they share.
 // The socket is a prescaler with a gate that gives its ticks to the path's engine one at a time.
 //
 // All paths share one domain of ticks and swaps. Those of the feed are delayed as much as the prescaler's steps, so

@@ -57,7 +57,7 @@ module position_streaming (
   logic [ 7:0] rounds_q;  // rounds left
   logic        one;
   logic        missing;
-  logic        stale_tick;  // beyond the end of the line
+  logic        stale_tick;  // a tick beyond the end of the line
   assign stale_tick = take_i && stale_i;
   assign one = count_i == 40'd1;
   assign missing = goes_on_i && !lost_o &&

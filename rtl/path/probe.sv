@@ -13,7 +13,7 @@
 // leaves a snapshot that does not count. The request comes one clock after the edge, because the path from a filtered
 // level to the snapshot would be one of the card's longest.
 //
-// No edge is taken while a fault's ramp is under way, whose snapshot is being written, nor in the clock of a cut.
+// No edge is taken while a fault's stop is under way, because its snapshot is being written, nor in the clock of a cut.
 `default_nettype none
 
 module probe #(

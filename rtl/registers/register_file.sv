@@ -51,7 +51,7 @@ module register_file #(
     input wire logic rest_i,
     input wire logic probe_i,
     input wire logic mark_i,
-    input wire logic [capture_pkg::WIDTH-1:0] capture_i,  // its ASK: levels, each requests a snapshot
+    input wire logic [capture_pkg::WIDTH-1:0] capture_i,  // field ASK: levels, each requests a snapshot
     output logic [capture_answer_pkg::WIDTH-1:0] capture_answer_o,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,  // near end of the chain
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o  // the chain after FAULT and STATUS

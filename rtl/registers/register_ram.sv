@@ -18,7 +18,7 @@ module register_ram #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [31:0] clock_hz_i,  // strap
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] store_i,  // a word of a snapshot
     input wire logic [9:0] clocks_i,  // low bits of the clocks since reset

@@ -32,7 +32,7 @@ module soft_limits #(
   logic [Axes-1:0] counts;  // a pulse begins; the position includes it from the next clock on
   logic [Axes-1:0] counts_back;
   logic [Axes-1:0] moved_q;  // the axis has moved since it was last examined
-  logic [Axes-1:0] back_q;  // its last pulse went backwards
+  logic [Axes-1:0] back_q;  // the axis's last pulse went backwards
   logic [  Bits:0] reads_q;  // axis whose end is read; the highest bit counts rounds
   logic            clearing_q;  // after a reset the ends are set to 0
   logic [    31:0] end_read_q;

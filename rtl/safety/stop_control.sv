@@ -36,10 +36,10 @@ module stop_control #(
     input wire logic underrun_i,  // under-run hold: neither a fault nor a cut
     input wire logic probe_i,  // a probe has tripped: neither a fault nor a cut
     input wire logic button_i,  // the feed hold button holds, like HOLD
-    // what still moves
+    // motion that is still under way
     input wire logic take_i,  // a tick is taken in this clock (combinational)
     input wire logic swap_i,  // a path begins
-    input wire logic quiet_i,  // no path tick waits or is on its way to an engine, none makes a step
+    input wire logic quiet_i,  // no path tick waits or is on its way to an engine, and no engine is making a step
     input wire logic pulses_i,  // an axis is busy
     input wire logic busy_i,  // something runs or is queued
     output logic [31:0] fault_o,
