@@ -1,4 +1,4 @@
-// START: reads the direct-mode registers, checks them, shifts them into the chains of the masked axes and starts the move.
+// START: reads the direct-mode registers, checks them, shifts them into the chains of the masked axes, starts the move.
 //
 // The chains are loaded while the registers are checked: nothing takes them up before `go_o`, and the next command or
 // START loads them again. A read takes 4 clocks: the address is a register, its data arrives two clocks later, and the
