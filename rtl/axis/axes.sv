@@ -1,4 +1,4 @@
-// All axes, what they share, and whether any of them still moves.
+// All axes, the signals that they share, and whether any of them still moves.
 `default_nettype none
 
 module axes #(
@@ -8,15 +8,15 @@ module axes #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic [move_pkg::WIDTH-1:0] move_i,
     input wire logic [axis_drive_pkg::WIDTH-1:0] drive_i,
-    input wire logic silent_i,  // no steps
+    input wire logic silent_i,  // steps are dropped
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
-    output logic live_o,  // a counted axis has not made its count
+    output logic live_o,  // an axis of a counted line has not yet made its count
     output logic busy_o,  // combinational
     output logic [Axes-1:0] fault_o,  // events
     output logic [axis_observe_pkg::WIDTH*Axes-1:0] observe_o,
@@ -28,7 +28,7 @@ module axes #(
   logic                              wait_tick;
   logic [                  Axes-1:0] live;
   logic [                  Axes-1:0] busy;
-  logic [SNAPSHOT*Axes+SNAPSHOT-1:0] chain;  // what comes in, and each axis's
+  logic [SNAPSHOT*Axes+SNAPSHOT-1:0] chain;  // the input of the chain, then the output of each axis
 
   assign chain[SNAPSHOT-1:0] = snapshot_i;
   assign snapshot_o = chain[SNAPSHOT*Axes+:SNAPSHOT];

@@ -1,5 +1,5 @@
-// One axis: the pulse generator's steps and those of the path engines, merged, shaped and counted; with its settings
-// and its word of the snapshot.
+// One axis: merges the steps of its pulse generator with those of the path engines, shapes them and counts them. It
+// also has the axis's settings and its word of the snapshot.
 `default_nettype none
 
 module axis #(
@@ -9,21 +9,21 @@ module axis #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
-    input wire logic [1:0] idle_level_i,  // {second pin, first pin}
+    input wire logic [1:0] idle_level_i,  // level before and in reset: {second pin, first pin}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     // path domain
     input wire logic tick_i,
     input wire logic swap_i,
-    input wire logic active_i,  // sampled with the swap
-    input wire logic direct_i,  // with it: counted, and lines drawn backwards are mirrored
-    // An arc's next chord: its increment, three halfwords, and the swap that keeps the phase. Never beside a halfword of
-    // the load bus for this axis.
+    input wire logic active_i,  // sampled with swap_i: the generator makes steps
+    input wire logic direct_i,  // sampled with swap_i: the line is counted, and mirrored if it runs backwards
+    // The next chord of an arc: its increment in three halfwords, and the swap that keeps the phase. Never in the same
+    // clock as a halfword of the load bus for this axis.
     input wire logic [15:0] chord_word_i,
     input wire logic chord_load_i,
     input wire logic chord_swap_i,
     input wire logic silent_i,  // steps are dropped
-    input wire logic engine_step_i,  // a path runs on one engine: never together with a step of the generator
+    input wire logic engine_step_i,  // never together with a step of the generator, since a path runs on one engine
     input wire logic engine_dir_i,
     input wire logic wait_tick_i,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
@@ -64,7 +64,8 @@ module axis #(
       .mode_o(mode)
   );
 
-  // A clock later, so that no comparison stands before the count's adder; path swaps come three clocks late.
+  // Loads are registered, so that no comparison precedes the count's adder. There is time: path swaps arrive three
+  // clocks late.
   logic        load_increment_q;
   logic        load_count_q;
   logic [15:0] word_q;
@@ -94,7 +95,7 @@ module axis #(
       .live_o
   );
 
-  // A cut does not drop the step in this register: a step on its way to the shaper is made.
+  // A cut does not drop the step in this register: a step on its way to the shaper is still made.
   assign any_step = (generator_step || engine_step_i) && !silent_i;
   always_ff @(posedge clk_i) begin
     path_step_q <= any_step;

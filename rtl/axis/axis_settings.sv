@@ -1,4 +1,4 @@
-// The five settings of an axis, from the setting bus; a value on the bus was checked.
+// The five settings of an axis. Values on the setting bus have been checked already.
 `default_nettype none
 
 module axis_settings #(
@@ -42,7 +42,7 @@ module axis_settings #(
     end
   end
 
-  // The shaper's settings are in the first eight words of the axis's 32.
+  // The shaper's settings are among the first eight of the axis's 32 words.
   logic unused;
   assign unused = &{1'b0, data[31:16]};
 endmodule

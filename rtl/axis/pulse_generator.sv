@@ -1,27 +1,28 @@
-// Pulse generator of one axis: a phase accumulator with 40 fraction bits (fewer for proofs) whose carry is a step forward
-// and whose borrow is a step back, and a count that can end the line early (direct mode).
+// Pulse generator of one axis: a phase accumulator with 40 fraction bits (fewer for proofs). Its carry is a step
+// forward, its borrow a step back. A count can end the line early (direct mode).
 //
-// The accumulator is split: the low half is added at the tick, the high half one clock later, with its half of the
-// increment, the preset and the tick delayed alike. The step is registered before it meets the count, so neither adder
-// sits in front of other logic. Latency from tick_i to step_o: 3 clocks, always.
+// The accumulator is split. The low half is added at the tick, the high half one clock later; the high half of the
+// increment, the preset and the tick are delayed by the same clock. The step is registered before it reaches the count,
+// so neither adder precedes other logic. The latency from tick_i to step_o is always 3 clocks.
 //
-// A chord is a swap that keeps the phase and whether the axis steps: the line goes on with the next increment.
+// A chord is a swap that keeps the phase and the active flag: the line continues with the next increment.
 //
-// Rules for the user: swaps and chords at least 3 clocks apart; no load in the 2 clocks after either; no swap, no chord and
-// no count load while live_o; a count is used up by its line and loaded anew for the next.
+// Rules for the user: Swaps and chords are at least 3 clocks apart. No load comes in the 2 clocks after either. No
+// swap, chord or count load comes while live_o is high. A line uses up its count; the next counted line needs a new
+// load.
 `default_nettype none
 
 module pulse_generator #(
-    parameter int FractionBits = 40,  // even, 4 to 40; fewer only so that all lines can be tried
+    parameter int FractionBits = 40,  // even, 4 to 40; fewer only to test all lines
     parameter int CountWidth   = 32,  // at least 17, at most 32
-    parameter bit Counted      = 1    // 0: no count is built, counted_i and load_count_i do nothing
+    parameter bit Counted      = 1    // 0: without count; counted_i, load_count_i ignored
 ) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        clear_i,           // ends the line and drops the steps in flight
     input  wire logic        tick_i,
     input  wire logic        swap_i,
-    input  wire logic        chord_i,           // as a swap, of the increment alone
+    input  wire logic        chord_i,           // like a swap, but only of the increment
     input  wire logic        active_i,
     input  wire logic        counted_i,
     input  wire logic        mirror_i,
@@ -42,8 +43,8 @@ module pulse_generator #(
     if (load_increment_i) next_q <= {word_i, next_q[47:16]};
   end
 
-  // Low half of the accumulator. One half less 2^-FractionBits is 0111..1: each half is preset to zeros or ones but for the
-  // top bit.
+  // Low half of the accumulator. The preset is one half, or one half less 2^-FractionBits (0111..1). So apart from the
+  // top bit, each half of the accumulator is preset to zeros or to ones.
   logic [HALF-1:0] low_q;
   logic [HALF-1:0] low_increment_q;
   logic [  HALF:0] low_sum;
@@ -59,9 +60,9 @@ module pulse_generator #(
     else if (swap_i | tick_i) low_q <= low_sum[HALF-1:0] | {HALF{preset_high}};
   end
 
-  // High half, one clock later. A carry that differs from bit HALF of the increment is a step (bit HALF of the whole sum),
-  // and goes the way of the increment's sign. The carries are gated by the tick: then a carry ends in a table, not in a
-  // wire.
+  // High half, one clock later. A carry that differs from bit HALF of the increment is a step (bit HALF of the whole
+  // sum); the increment's sign gives its direction. The tick gates the carries, so that a carry ends in a lookup table,
+  // not in a wire.
   logic [HALF-1:0] high_q;
   logic [HALF+1:0] high_increment_q;
   logic [  HALF:0] high_sum;
@@ -87,12 +88,13 @@ module pulse_generator #(
     if (rst_i | clear_i) swap_q <= 1'b0;
   end
 
-  // A line's gate opens in the clock in which its first tick's carry can arrive, after the old line's last one.
+  // The gate of a line opens in the clock in which the carry of its first tick can arrive. The old line's last carry is
+  // before that.
   logic opening_q;  // the line swapped in last is active
   logic swap_late_q;
   logic open_q;
   logic nothing;  // the line is counted, and its count is 0
-  logic last;  // the step under way makes the count
+  logic last;  // the step under way completes the count
   logic step;
   assign step = carried_q & open_q;
 
@@ -137,7 +139,7 @@ module pulse_generator #(
     end
   endgenerate
 
-  logic unused_extension;  // of the third halfword only 10 bits have a meaning
+  logic unused_extension;  // only 10 bits of the third halfword have a meaning
   assign unused_extension = ^next_q[47:FractionBits+2];
 
 endmodule

@@ -1,7 +1,7 @@
-// The count of a pulse generator: lets a counted line make exactly `count` steps, up to one every clock.
+// The count of a pulse generator: a counted line makes exactly `count` steps, up to one per clock.
 //
-// Kept inverted, so that it counts up: then a bit's load and its increment fit one 4-input table. The lower four
-// bits count at once; the upper part follows a clock later and has 14 steps' time to settle its flag.
+// The count is kept inverted and counts up: the load and the increment of a bit then fit one 4-input table. The lower
+// four bits count at once. The upper bits follow one clock later, and their flag has the time of 14 steps to settle.
 `default_nettype none
 
 module step_count #(
@@ -12,11 +12,11 @@ module step_count #(
     input  wire logic        load_i,     // two halfwords, the lower first
     input  wire logic [15:0] word_i,
     input  wire logic        arm_i,      // the swap
-    input  wire logic        counted_i,  // sampled with it
-    input  wire logic        begin_i,    // two clocks later: steps belong to the line from the next clock on
+    input  wire logic        counted_i,  // sampled with arm_i
+    input  wire logic        begin_i,    // two clocks after arm_i: steps belong to the new line from the next clock on
     input  wire logic        step_i,
     output logic             live_o,
-    output logic             nothing_o,  // combinational, valid with begin_i: no step is allowed
+    output logic             nothing_o,  // combinational, valid with begin_i: the count is 0, no step is allowed
     output logic             last_o      // combinational: step_i is the line's last step
 );
 
@@ -37,7 +37,7 @@ module step_count #(
   assign last_o = count_step & slow_zero_q & (fast_q == 4'b1110);
   assign nothing_o = live_o & slow_zero_q & (fast_q == 4'b1111);
 
-  // The added load enable changes nothing (a load overrides the sum); it lets table and carry share an input.
+  // The added load enable has no effect, because a load overrides the sum. It lets table and carry share an input.
   assign {slow_full, slow_sum} = {1'b0, slow_q} + {1'b0, {(Width - 4) {load_i}}} + (Width - 3)'(1);
   assign fast_next = load_i ? shifted[3:0] : fast_q + {4{load_i}} + 4'd1;
   assign slow_next = load_i ? shifted[Width-1:4] : slow_sum;

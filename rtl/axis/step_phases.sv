@@ -1,26 +1,27 @@
 // The phases of a step and their timer: when a pulse begins and ends and when DIR may change.
 //
-// One timer serves all four times; a phase whose time is t lasts t + 3 clocks, of which a pulse shows max(1, t), from
-// the third on. So a pulse is high for exactly max(1, length); low for space + 6 clocks between pulses at the highest
-// rate (5 for length 0); DIR changes hold + 3 clocks or more after the space, and is set up for setup + 5.
+// One timer serves all four times. A phase with the time t lasts t + 3 clocks; a pulse is visible for max(1, t) of
+// them, from the third on. So a pulse is high for exactly max(1, length) clocks. At the highest rate it is low for
+// space + 6 clocks between pulses (space + 5 for length 0). DIR changes at least hold + 3 clocks after the space, and
+// is set up for setup + 5.
 `default_nettype none
 
 module step_phases (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic        same_i,         // a step waits that goes the way DIR points
-    input  wire logic        other_i,        // a step waits that goes the other way
+    input  wire logic        same_i,         // a waiting step has DIR's direction
+    input  wire logic        other_i,        // a waiting step has the other direction
     input  wire logic [15:0] step_length_i,
     input  wire logic [15:0] step_space_i,
     input  wire logic [15:0] dir_setup_i,
     input  wire logic [15:0] dir_hold_i,
     output logic             go_o,           // a step is served now (combinational)
-    output logic             resting_o,      // no phase runs, DIR's hold time included (combinational)
+    output logic             resting_o,      // no phase runs, DIR's hold time is over (combinational)
     output logic             dir_o,
     output logic             begun_o,        // first clock of a pulse
     output logic             pulse_o
 );
-  // REST is DIR's hold time, and then waiting for steps.
+  // REST is DIR's hold time, and then the wait for a step.
   typedef enum logic [1:0] {
     REST,
     SETUP,
@@ -54,10 +55,11 @@ module step_phases (
     end
   end
 
-  // The timer is zeroed as the phase begins, takes the time a clock later and counts down. Zero plus a time is a load,
-  // plus ones a count: so one adder input serves both, and a second time is merged in the same 4-input table (it needs
-  // no carry: in the clock of a load there is none). The adder's carry says that the timer is not zero.
-  logic [15:0] pulse_time_q;  // all ones but in the first clock of a phase
+  // The timer is zeroed as the phase begins, takes the time a clock later and counts down. Adding a time to 0 loads it;
+  // adding all ones counts down. So one adder input serves both. The second time is ORed in, within the same 4-input
+  // table: it needs no carry, because no carry arises in the clock of a load. The adder's carry says that the timer is
+  // not zero.
+  logic [15:0] pulse_time_q;  // all ones except in the first clock of a phase
   logic [15:0] dir_time_q;
   logic [15:0] timer_q;
   logic [15:0] timer_sum;
@@ -79,7 +81,7 @@ module step_phases (
     if (load) pulse_time_q <= !take_pulse_time ? '0 : (phase_q == HIGH) ? step_space_i : step_length_i;
   end
 
-  // The pulse follows its phase by three clocks: then the timer holds its time.
+  // The pulse follows its phase by three clocks; by then the timer holds the phase's time.
   logic go_q;
   logic settled_q;
   always_ff @(posedge clk_i) begin

@@ -1,5 +1,5 @@
-// Step shaper of one axis: turns one-clock steps into pulses at the pins that keep the drive's times, and counts the
-// position by what the pins show.
+// Step shaper of one axis: turns one-clock steps into pulses at the pins that respect the drive's timing. The position
+// counts the pulses that the pins show.
 `default_nettype none
 
 module step_shaper (
@@ -12,13 +12,13 @@ module step_shaper (
     input  wire logic [15:0] dir_setup_i,
     input  wire logic [15:0] dir_hold_i,
     input  wire logic [ 3:0] mode_i,
-    input  wire logic [ 1:0] idle_level_i,   // {second pin, first pin}
+    input  wire logic [ 1:0] idle_level_i,   // level in reset: {second pin, first pin}
     input  wire logic        wait_tick_i,
     output logic             step_o,
     output logic             dir_o,
     output logic      [31:0] position_o,
-    output logic             begun_o,        // event: a pulse begins; the position has it in the next clock
-    output logic             back_o,         // with it: 1 backwards, 0 forwards
+    output logic             begun_o,        // event: a pulse begins; position_o includes it from the next clock on
+    output logic             back_o,         // with begun_o: 1 backwards, 0 forwards
     output logic             busy_o,
     output logic             fault_o         // event
 );
@@ -69,13 +69,14 @@ module step_shaper (
     if (rst_i) busy_o <= 1'b0;
   end
 
-  // The two pins in the axis's mode, and the position that they show: both a register after the pulse.
+  // The two pins in the axis's mode, and the position that they show. Both are registered one clock after the pulse.
   function automatic logic [1:0] gray(input logic [1:0] place);
     gray = place ^ {1'b0, place[1]};
   endfunction
 
   always_ff @(posedge clk_i) begin
-    // In quadrature the pins are the position's two low bits, as they will be, in Gray code (first pin leads forwards).
+    // In quadrature the pins are the two low bits of the new position in Gray code (the first pin leads in forward
+    // motion).
     case (mode_i[1:0])
       2'd0: {dir_o, step_o} <= mode_i[3:2] ^ {dir, pulse};
       2'd1: {dir_o, step_o} <= mode_i[3:2] ^ {pulse && dir, pulse && !dir};

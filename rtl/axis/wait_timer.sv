@@ -1,4 +1,4 @@
-// One clock in HOLD_LIMIT: the tick by which the shapers judge how long a step has waited.
+// Ticks once per HOLD_LIMIT clocks. At these ticks the shapers judge how long a step has waited.
 `default_nettype none
 
 module wait_timer (
@@ -7,7 +7,7 @@ module wait_timer (
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     output logic tick_o
 );
-  logic [15:0] last_q;  // HOLD_LIMIT less one; it is at least 1
+  logic [15:0] last_q;  // HOLD_LIMIT - 1; HOLD_LIMIT is at least 1
   logic [15:0] count_q;
   logic [31:0] data;
 
@@ -15,7 +15,7 @@ module wait_timer (
 
   always_ff @(posedge clk_i) begin
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_HOLD_LIMIT)) last_q <= data[15:0] - 16'd1;
-    // A limit lowered in mid count takes effect in the next clock; >= costs no more than the equality.
+    // If the limit is lowered below the count, the tick comes in the next clock. >= costs no more than ==.
     tick_o  <= count_q >= last_q;
     count_q <= (count_q >= last_q) ? 16'd0 : count_q + 16'd1;
     if (rst_i) begin

@@ -1,7 +1,7 @@
-// The steps that came and are not made yet, in order: a direction each, up to four.
+// The steps that have arrived and are not yet made: up to four directions, in order.
 //
-// A step that finds all places taken is dropped, which is a fault; so is one that waits from one wait tick to the next
-// without any being served.
+// A step that arrives while all places are taken is dropped, which is a fault. It is also a fault if a step waits from
+// one wait tick to the next while no step is served.
 `default_nettype none
 
 module waiting_steps (
@@ -9,26 +9,26 @@ module waiting_steps (
     input  wire logic rst_i,
     input  wire logic step_i,
     input  wire logic dir_i,
-    input  wire logic points_i,     // the way DIR points
+    input  wire logic points_i,     // direction of DIR
     input  wire logic take_i,       // the first step is served
     input  wire logic wait_tick_i,
     output logic      any_o,        // a step waits
-    output logic      same_o,       // the first goes the way DIR points; a clock late
-    output logic      other_o,      // it goes the other way; a clock late
+    output logic      same_o,       // the first step has DIR's direction; delayed by a clock
+    output logic      other_o,      // the first step has the other direction; delayed by a clock
     output logic      fault_o       // event
 );
-  // The next one at 0: a thermometer of valid flags and a direction each.
+  // Index 0 is the next step: valid flags as a thermometer code, and a direction per place.
   logic [3:0] valid_q;
   logic [3:0] direction_q;
-  logic       waited_q;  // since the last wait tick
+  logic       waited_q;  // a step waited at the last wait tick, none was served since
   logic       same;
 
   assign any_o = valid_q[0];
   assign same  = valid_q[0] && direction_q[0] == points_i;
 
   always_ff @(posedge clk_i) begin : p_steps
-    logic [3:0] from_before;  // is there a step in the place before
-    logic [3:0] from_after;  // and after
+    logic [3:0] from_before;  // the place before has a step
+    logic [3:0] from_after;  // the place after has a step
     logic [3:0] direction_after;
 
     same_o  <= same;

@@ -1,12 +1,13 @@
-// What the registers answer to the capture units. Combinational: it depends on what they ask (capture_pkg), which does not
-// depend on it.
+// Answers of the registers to the capture units. They are combinational and depend on the requests in capture_pkg,
+// which do not depend on the answers.
 `default_nettype none
 package capture_answer_pkg;
 
-  // Fields, lowest bit first; each ends where the next one begins. The first two have a bit for each of four units.
-  localparam int CAPTURED = 0;  // events: the snapshot that was asked for is in the unit's area
-  localparam int QUEUED = 4;  // events: the capture that was handed on is in the queue, or lost
-  localparam int FULL = 8;  // with QUEUED: it is lost
+  // Fields, lowest bit first; each ends where the next one begins. The first two have one bit per unit, for four
+  // units.
+  localparam int CAPTURED = 0;  // events: the requested snapshot is in the unit's area
+  localparam int QUEUED = 4;  // events: the capture that the unit handed on is in the queue, or was lost
+  localparam int FULL = 8;  // with QUEUED: the queue is full and the capture is lost
   localparam int WIDTH = 9;
 
   function automatic logic [3:0] captured(input logic [WIDTH-1:0] answer);

@@ -1,13 +1,14 @@
-// What the capture units ask of the registers, hand to the queue, and show. ASK is combinational, of the inputs; the others
-// come from registers.
+// Signals from the capture units to the registers: requests, captures for the queue, state. ASK is combinational from
+// the inputs; the other fields are registered.
 `default_nettype none
 package capture_pkg;
 
-  // Fields, lowest bit first; each ends where the next one begins. The first three have a bit for each of four units.
-  localparam int ASK = 0;  // levels: a snapshot is wanted
-  localparam int PASSED = 4;  // levels: a capture for the queue
-  localparam int EDGE = 8;  // with PASSED: the level that its edge led to
-  localparam int STATE = 12;  // 32 bits: CAPTURE_STATE
+  // Fields, lowest bit first; each ends where the next one begins. The first three have one bit per unit, for four
+  // units.
+  localparam int ASK = 0;  // levels: the unit requests a snapshot
+  localparam int PASSED = 4;  // levels: the unit has a capture for the queue
+  localparam int EDGE = 8;  // with PASSED: the level after the captured edge
+  localparam int STATE = 12;  // 32 bits: the register CAPTURE_STATE
   localparam int WIDTH = 44;
 
   function automatic logic [3:0] ask(input logic [WIDTH-1:0] capture);

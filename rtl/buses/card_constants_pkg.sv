@@ -1,5 +1,5 @@
-// What parameters decide of the registers that are constants: one word for each of the first addresses of
-// the map.
+// The constant registers whose values depend on parameters: one word for each of the first 16 words of the register
+// map.
 `default_nettype none
 package card_constants_pkg;
 
@@ -11,7 +11,7 @@ package card_constants_pkg;
     word = constants[32*index+:32];
   endfunction
 
-  // The constant of this byte address alone.
+  // All zeros except for the constant at this byte address.
   function automatic logic [WIDTH-1:0] at(input logic [11:0] address, input logic [31:0] value);
     at = WIDTH'(value) << 8 * address;
   endfunction

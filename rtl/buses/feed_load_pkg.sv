@@ -1,5 +1,5 @@
-// The feed load: halfwords of the next feed piece on their way into shift chains, lowest halfword first. Targets are those
-// of load_target_pkg.
+// The feed load: carries halfwords of the next feed piece into shift chains, lowest halfword first. The targets are
+// those of load_target_pkg.
 `default_nettype none
 package feed_load_pkg;
 

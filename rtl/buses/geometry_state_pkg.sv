@@ -1,13 +1,13 @@
-// What the registers and the lockstep see of paths and direct moves.
+// State of paths and direct moves, for the registers and the lockstep.
 `default_nettype none
 package geometry_state_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
   localparam int GEOMETRY_BEGUN = 0;  // 32 bits: the register GEOMETRY_BEGUN
   localparam int STALE_TICKS = 32;  // 32 bits: ticks beyond the end of the last line of position streaming
-  localparam int PATH_SWAP = 64;  // event: a path begins; of the lockstep alone
-  localparam int STALE = 65;  // a line goes on beyond its end
-  localparam int WAITING = 66;  // WAIT_INPUT waits (combinational)
+  localparam int PATH_SWAP = 64;  // event: a path begins; for the lockstep only
+  localparam int STALE = 65;  // a line continues beyond its end (position streaming)
+  localparam int WAITING = 66;  // a WAIT_INPUT is waiting (combinational)
   localparam int PATH_ACTIVE = 67;  // a path is under way
   localparam int ENDED = 68;  // the last command was an END (combinational)
   localparam int DIRECT = 69;  // a direct move is under way

@@ -1,12 +1,13 @@
-// The levels of the card's inputs behind synchroniser and polarity, before and behind their filters: one bundle for every
-// block that looks at an input. A bit for each input, 0 for absent ones. Without machine inputs there are no filters.
+// The levels of the card's inputs after synchroniser and polarity, both before and after their filters: one bundle for
+// all blocks that read inputs. There is one bit per input; absent inputs are 0. Without machine inputs there are no
+// filters.
 `default_nettype none
 package input_levels_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int LEVELS = 0;  // 32 bits: behind the filters (combinational)
-  localparam int RAW = 32;  // 32 bits: before them (combinational)
-  localparam int QUIET = 64;  // 32 bits, with captures: raw has stood at the filtered level for a filter's length
+  localparam int LEVELS = 0;  // 32 bits: after the filters (combinational)
+  localparam int RAW = 32;  // 32 bits: before the filters (combinational)
+  localparam int QUIET = 64;  // 32 bits, with captures: RAW has equalled LEVELS for a whole filter length
   localparam int WIDTH = 96;
 
   function automatic logic [31:0] levels(input logic [WIDTH-1:0] inputs);

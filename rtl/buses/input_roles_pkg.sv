@@ -1,10 +1,11 @@
-// The roles of the card's inputs: filtered active levels, registered. Bit n of a field of 8 is axis n's, 0 for absent ones.
+// The roles of the card's inputs: active levels after the filters, registered. In a field of 8 bits, bit n belongs to
+// axis n; absent axes are 0.
 `default_nettype none
 package input_roles_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int LIMIT_MINUS = 0;  // 8 bits: the limit at the axis's negative end
-  localparam int LIMIT_PLUS = 8;  // 8 bits: the limit at its positive end
+  localparam int LIMIT_MINUS = 0;  // 8 bits: limit switch at the axis's negative end
+  localparam int LIMIT_PLUS = 8;  // 8 bits: limit switch at the axis's positive end
   localparam int DRIVE_FAULT = 16;  // 8 bits: the axis's drive reports a fault
   localparam int FEED_HOLD = 24;  // the feed hold button
   localparam int CYCLE_START = 25;  // the cycle start button

@@ -1,4 +1,4 @@
-// The load bus: halfwords of decoded geometry commands and direct moves on their way into shift chains, lowest halfword
+// The load bus: carries halfwords of decoded geometry commands and direct moves into shift chains, lowest halfword
 // first (q <= {word, q[msb:16]}). Units and targets are those of load_target_pkg.
 `default_nettype none
 package load_bus_pkg;

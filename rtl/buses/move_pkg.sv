@@ -1,13 +1,13 @@
-// A path on its way from the geometry part to engines and axes.
+// A path that the geometry part hands to the engines and the axes.
 `default_nettype none
 package move_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int ENGINE = 0;  // 5 bits: with swap: what the path runs on, by its number, card_map_pkg::ENGINE_*
-  localparam int AXES = 5;  // 8 bits: with swap: the axes whose own generators make its steps
+  localparam int ENGINE = 0;  // 5 bits: with SWAP: number of the path's engine, card_map_pkg::ENGINE_*
+  localparam int AXES = 5;  // 8 bits: with SWAP: the axes whose own pulse generators make the steps
   localparam int SWAP = 13;  // event: the path begins with the next tick
-  localparam int DIRECT = 14;  // it is a direct move
-  localparam int TAKING = 15;  // a path on an engine still takes ticks (combinational)
+  localparam int DIRECT = 14;  // the path is a direct move
+  localparam int TAKING = 15;  // a path on an engine other than lines still takes ticks (combinational)
   localparam int WIDTH = 16;
 
   function automatic logic [4:0] engine(input logic [WIDTH-1:0] move);

@@ -1,4 +1,4 @@
-// What a PWM command orders of its channel.
+// The settings that a PWM command gives to its channel.
 `default_nettype none
 package pwm_order_pkg;
 
@@ -21,7 +21,7 @@ package pwm_order_pkg;
     shift = order[SHIFT+:5];
   endfunction
 
-  // From the halfwords of the command, the first one lowest.
+  // Packs the halfwords of the command, of which the first is lowest.
   function automatic logic [WIDTH-1:0] of_words(input logic [47:0] words);
     of_words = {words[4], words[12:8], words[47:32], words[31:16]};
   endfunction

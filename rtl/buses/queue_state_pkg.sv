@@ -1,11 +1,11 @@
-// What the registers show of both command queues.
+// State of both command queues, for the registers.
 `default_nettype none
 package queue_state_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int FEED_ROOM = 0;  // 16 bits: halfwords
-  localparam int GEOMETRY_ROOM = 16;  // 16 bits: halfwords
-  localparam int FEED_LOW = 32;  // below its watermark
+  localparam int FEED_ROOM = 0;  // 16 bits: free halfwords
+  localparam int GEOMETRY_ROOM = 16;  // 16 bits: free halfwords
+  localparam int FEED_LOW = 32;  // the feed queue is below its watermark
   localparam int GEOMETRY_LOW = 33;
   localparam int WIDTH = 34;
 

@@ -1,10 +1,10 @@
-// What register_access says to REFUSAL of the port that asks (combinational).
+// A refusal that register_access reports to REFUSAL of the port that made the access (combinational).
 `default_nettype none
 package refusal_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int REASON = 0;  // 8 bits: of the map's REFUSE_*
-  localparam int NUMBER = 8;  // 8 bits: of the stream's command
+  localparam int REASON = 0;  // 8 bits: a REFUSE_* of the register map
+  localparam int NUMBER = 8;  // 8 bits: number of the stream's command
   localparam int REFUSE = 16;  // event: an access or a word of the stream was refused
   localparam int CLEAR = 17;  // event: the port clears its REFUSAL; never with a refusal
   localparam int WIDTH = 18;

@@ -1,16 +1,16 @@
-// An access to the registers. `request` is an event; the other fields stand still from it until the answer, that clock
-// included.
+// An access to the registers. REQUEST is an event; the other fields keep their values from it until the answer,
+// including the clock of the answer.
 `default_nettype none
 package register_access_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int DATA = 0;  // 32 bits: of a write
-  localparam int ADDRESS = 32;  // 12 bits: bytes
-  localparam int PARTIAL = 44;  // a write without all its byte strobes
+  localparam int DATA = 0;  // 32 bits: data of a write
+  localparam int ADDRESS = 32;  // 12 bits: address in bytes
+  localparam int PARTIAL = 44;  // a write that lacks a byte strobe
   localparam int WRITE = 45;  // 0: a read
-  localparam int OF_SESSION = 46;  // a session at the port asks for it; 0: the port itself
+  localparam int OF_SESSION = 46;  // 1: the access belongs to a session at the port; 0: to the port itself
   localparam int NEW_SESSION = 47;  // the first access of a session
-  localparam int PORT = 48;  // 2 bits: the host port that asks; 0 in front of the arbiter
+  localparam int PORT = 48;  // 2 bits: the host port that made the access; 0 until the arbiter sets it
   localparam int REQUEST = 50;  // event
   localparam int WIDTH = 51;
 
@@ -31,7 +31,7 @@ package register_access_pkg;
     word = access[ADDRESS+2+:10];
   endfunction
 
-  // Whether the address is that of a whole word.
+  // Whether the address is a multiple of 4.
   function automatic logic aligned(input logic [WIDTH-1:0] access);
     aligned = access[ADDRESS+:2] == 2'd0;
   endfunction
@@ -47,7 +47,7 @@ package register_access_pkg;
     with_session = {access[WIDTH-1:PORT], new_session, of_session, access[OF_SESSION-1:0]};
   endfunction
 
-  // The access as the arbiter passes it on: its request when `now`, from the port `from`.
+  // The access as the arbiter passes it on: REQUEST is `now`, the port is `from`.
   function automatic logic [WIDTH-1:0] passed_on(input logic [WIDTH-1:0] access, input logic now,
                                                  input logic [1:0] from);
     passed_on = {now, from, access[PORT-1:0]};

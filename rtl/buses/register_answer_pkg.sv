@@ -3,8 +3,8 @@
 package register_answer_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int DATA = 0;  // 32 bits: with ack, of a good read (combinational); otherwise 0
-  localparam int ERROR = 32;  // with ack: the access was refused and changed nothing
+  localparam int DATA = 0;  // 32 bits: with ACK: data of a read that was not refused (combinational); otherwise 0
+  localparam int ERROR = 32;  // with ACK: the access was refused and changed nothing
   localparam int ACK = 33;  // event
   localparam int WIDTH = 34;
 
@@ -16,7 +16,7 @@ package register_answer_pkg;
     pack = {now, refused, value};
   endfunction
 
-  // The answer for one of several ports: the others see no ack.
+  // The answer for one of several ports: without ACK unless it is for this port.
   function automatic logic [WIDTH-1:0] only_if(input logic [WIDTH-1:0] answer, input logic mine);
     only_if = {answer[ACK] && mine, answer[ACK-1:0]};
   endfunction

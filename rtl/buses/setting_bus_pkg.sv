@@ -1,5 +1,5 @@
-// The setting bus: a setting that a host has written, checked by the register map, on its way to all blocks at once. Each
-// block keeps its own settings and knows their addresses. The block RAM of the registers is written in the same form.
+// The setting bus: broadcasts each setting that a host writes, once the register map has checked it. Each block keeps
+// its own settings and knows their addresses. Writes to the block RAM of the registers have the same form.
 `default_nettype none
 package setting_bus_pkg;
 

@@ -1,20 +1,20 @@
-// The snapshot chain, which passes from one owner of a value to the next: at a strobe each owner takes its value, at a
-// shift the word that comes in.
+// The snapshot chain: a shift register through all blocks that own a latched value. At a strobe each owner takes its
+// value; at a shift it takes the word of the owner before it.
 `default_nettype none
 package snapshot_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int WORD = 0;  // 32 bits: of the owner before
+  localparam int WORD = 0;  // 32 bits: word of the owner before
   localparam int STROBE = 32;  // event
   localparam int SHIFT = 33;  // event, never with a strobe
-  localparam int REST = 34;  // with the strobe: it is that of the area REST
+  localparam int REST = 34;  // with STROBE: the snapshot is for the area REST
   localparam int WIDTH = 35;
 
   function automatic logic [31:0] word(input logic [WIDTH-1:0] chain);
     word = chain[WORD+:32];
   endfunction
 
-  // The chain as it goes on behind an owner that holds `value`.
+  // The chain after an owner that holds `value`.
   function automatic logic [WIDTH-1:0] with_word(input logic [WIDTH-1:0] chain, input logic [31:0] value);
     with_word = {chain[REST], chain[SHIFT], chain[STROBE], value};
   endfunction

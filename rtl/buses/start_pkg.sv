@@ -1,10 +1,10 @@
-// START on its way to the direct loader, and what the loader reads of the registers.
+// START for the direct loader, and the registers that the loader reads.
 `default_nettype none
 package start_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int DATA = 0;  // 32 bits: the register at the answer's address two clocks ago
-  localparam int MASK = 32;  // 8 bits: axes of the move; stands until the answer
+  localparam int DATA = 0;  // 32 bits: the register that start_answer_pkg::ADDRESS named two clocks ago
+  localparam int MASK = 32;  // 8 bits: axes of the move; keeps its value until the answer
   localparam int START = 40;  // event
   localparam int WIDTH = 41;
 

@@ -1,10 +1,10 @@
-// What the command checker says of the stream.
+// Answers of the command checker to the stream.
 `default_nettype none
 package stream_answer_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int REASON = 0;  // 8 bits: of the last refusal
-  localparam int NUMBER = 8;  // 8 bits: in the last header
+  localparam int REASON = 0;  // 8 bits: reason of the last refusal
+  localparam int NUMBER = 8;  // 8 bits: command number in the last header
   localparam int REFUSE = 16;  // event
   localparam int READY = 17;  // the next word may come
   localparam int PARTIAL = 18;  // the stream is inside a command

@@ -1,10 +1,10 @@
-// What a Wishbone B4 master says; each field is the signal of its name.
+// Signals from a Wishbone B4 master to the card; each field is the Wishbone signal of that name.
 `default_nettype none
 package wishbone_request_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int DAT = 0;  // 32 bits: of a write
-  localparam int ADR = 32;  // 12 bits: bytes
+  localparam int DAT = 0;  // 32 bits: data of a write
+  localparam int ADR = 32;  // 12 bits: address in bytes
   localparam int SEL = 44;  // 4 bits
   localparam int WE = 48;
   localparam int STB = 49;

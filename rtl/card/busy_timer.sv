@@ -1,4 +1,4 @@
-// Busy until nothing has run for 11 clocks: the longest way of a tick to an axis's own busy flag is 10.
+// Stays busy until nothing has run for 11 clocks: a tick takes at most 10 clocks to set its axis's own busy flag.
 `default_nettype none
 
 module busy_timer (

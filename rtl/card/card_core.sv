@@ -1,43 +1,43 @@
-// The card behind its inner register port: registers, command checker, queues and all that moves.
-// Ports and latencies: docs/developer/architecture.md.
+// The card behind its inner register port: registers, command checker, queues, inputs and the motion core. Ports and
+// latencies: docs/developer/architecture.md.
 `default_nettype none
 module card_core #(
     parameter int          Axes              = 4,     // 1 to 8
     parameter int          GeometryDepth     = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth         = 2560,
     parameter int          Accumulator       = 1,     // 0: without arcs and conics
-    parameter int          EightDirections   = 0,     // 1: the accumulator's second step rule
-    parameter int          ArcGenerator      = 0,     // 1: arcs in chords
-    parameter int          DirectMode        = 1,     // 0: without
-    parameter int          UnderrunHold      = 1,     // 0: without
+    parameter int          EightDirections   = 0,     // 1: the accumulator's step rule for 8 directions
+    parameter int          ArcGenerator      = 0,     // 1: arcs as chords
+    parameter int          DirectMode        = 1,     // 0: without direct mode
+    parameter int          UnderrunHold      = 1,     // 0: without under-run hold
     parameter int          Classes           = 1,     // 0: one ratio for all pieces
-    parameter int          Watermarks        = 1,     // 0: without
+    parameter int          Watermarks        = 1,     // 0: without watermarks
     parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
-    parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
+    parameter int          PositionStreaming = 0,     // 1: for a host that sends one line per period
     parameter int          MachineInputs     = 0,     // 1: filters and roles of inputs; limits, drive faults, feed hold
-    parameter int          Captures          = 0,     // 0 to 4 units; with one, the probe's edge is captured, too
+    parameter int          Captures          = 0,     // 0 to 4 units; with any, the probe's first touch is captured
     parameter int          CaptureFifo       = 0,     // 1: a queue of 16 captures
-    parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
+    parameter int          SoftLimits        = 0,     // 1: each axis's position is compared with its range
     parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
     parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
     parameter int          Pwm               = 0,     // 1: PWM on two channels of outputs
-    parameter int          Inputs            = 4,     // 1 to 32, of a card with path commands
+    parameter int          Inputs            = 4,     // 1 to 32; used with path commands
     parameter int          Outputs           = 4,     // 1 to 16
-    parameter int          Ports             = 1,     // 1 to 4: what is joined in front of the inner port
+    parameter int          Ports             = 1,     // 1 to 4: host ports in front of the inner port
     parameter logic [31:0] BuildId           = 0,
     parameter int          BuildDirty        = 0,
     parameter logic [31:0] BoardId           = 0
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    // the inner port
+    // inner register port
     input wire logic [register_access_pkg::WIDTH-1:0] access_i,
     output logic [register_answer_pkg::WIDTH-1:0] answer_o,
     // straps
     input wire logic [31:0] clock_hz_i,
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
-    input wire logic emergency_stop_level_i,  // of the pin: the level that means stop
+    input wire logic emergency_stop_level_i,  // level of the pin that means stop
     // pins
     input wire logic [Inputs-1:0] input_i,
     input wire logic emergency_stop_i,
@@ -79,13 +79,13 @@ module card_core #(
       .Ports(Ports)
   ) checked ();
 
-  // between registers and stream
+  // between registers and command stream
   logic [setting_bus_pkg::WIDTH-1:0] setting;
   logic stream_write;
   logic flush;
   logic [stream_answer_pkg::WIDTH-1:0] stream_answer;
   logic [queue_state_pkg::WIDTH-1:0] queue_state;
-  // between registers and what moves
+  // between registers and motion core
   logic [31:0] clear_fault;
   logic session_gone;
   logic link_lost;
@@ -111,7 +111,7 @@ module card_core #(
   logic filling;
   logic emergency;
   logic emergency_latched;
-  // between stream and what moves
+  // between command stream and motion core
   logic cut;
   logic closed;
   logic [arrival_pkg::WIDTH-1:0] arrival;

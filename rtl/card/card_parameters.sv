@@ -1,10 +1,10 @@
-// The checks of the card's parameters: one that is out of its range, or that needs another, stops every reader here. There
-// is no module of the name that is instantiated then, and the name says why.
+// Checks the card's parameters. If one is out of range, or lacks another one that it needs, elaboration stops here in
+// every tool: an instance names a module that does not exist, and that name is the error message.
 `default_nettype none
 module card_parameters #(
     parameter int          Axes          = 4,
     parameter logic [31:0] Engines       = '0,    // bits card_map_pkg::ENGINE_*
-    parameter int          Flags         = 0,     // all parameters that are 0 or 1, or-ed
+    parameter int          Flags         = 0,     // bitwise OR of all parameters that must be 0 or 1
     parameter int          GeometryDepth = 4096,
     parameter int          FeedDepth     = 2560,
     parameter int          Captures      = 0,
@@ -31,7 +31,7 @@ module card_parameters #(
     ERROR_engines_and_BuildDirty_must_be_0_or_1 error ();
   end
 
-  // A parameter that is neither 0 nor 1 is said first.
+  // If a flag is neither 0 nor 1, only that error is reported.
   if (Flags == 0 || Flags == 1) begin : gen_needs
     localparam logic PATH_COMMANDS = Engines[card_map_pkg::ENGINE_PATH_COMMANDS];
     localparam logic MACHINE_INPUTS = Engines[card_map_pkg::ENGINE_MACHINE_INPUTS];

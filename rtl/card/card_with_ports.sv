@@ -1,44 +1,44 @@
-// The card behind the host ports that it is built with; with AXI4-Lite alone it is trammel_card.
+// The card with the host ports that its parameters select; with AXI4-Lite alone it equals trammel_card.
 `default_nettype none
 module card_with_ports #(
     parameter int          Axes              = 4,     // 1 to 8
     parameter int          GeometryDepth     = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth         = 2560,
     parameter int          Accumulator       = 1,     // 0: without arcs and conics
-    parameter int          EightDirections   = 0,     // 1: the accumulator's second step rule
-    parameter int          ArcGenerator      = 0,     // 1: arcs in chords
-    parameter int          DirectMode        = 1,     // 0: without
-    parameter int          UnderrunHold      = 1,     // 0: without
+    parameter int          EightDirections   = 0,     // 1: the accumulator's step rule for 8 directions
+    parameter int          ArcGenerator      = 0,     // 1: arcs as chords
+    parameter int          DirectMode        = 1,     // 0: without direct mode
+    parameter int          UnderrunHold      = 1,     // 0: without under-run hold
     parameter int          Classes           = 1,     // 0: one ratio for all pieces
-    parameter int          Watermarks        = 1,     // 0: without
+    parameter int          Watermarks        = 1,     // 0: without watermarks
     parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
-    parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
+    parameter int          PositionStreaming = 0,     // 1: for a host that sends one line per period
     parameter int          MachineInputs     = 0,     // 1: filters and roles of inputs; limits, drive faults, feed hold
-    parameter int          Captures          = 0,     // 0 to 4 units; with one, the probe's edge is captured, too
+    parameter int          Captures          = 0,     // 0 to 4 units; with any, the probe's first touch is captured
     parameter int          CaptureFifo       = 0,     // 1: a queue of 16 captures
-    parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
+    parameter int          SoftLimits        = 0,     // 1: each axis's position is compared with its range
     parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
     parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
     parameter int          Pwm               = 0,     // 1: PWM on two channels of outputs
-    parameter int          Inputs            = 4,     // 1 to 32, of a card with path commands
+    parameter int          Inputs            = 4,     // 1 to 32; used with path commands
     parameter int          Outputs           = 4,
     parameter logic [31:0] BuildId           = 0,
     parameter int          BuildDirty        = 0,
     parameter logic [31:0] BoardId           = 0,
     // host ports
-    parameter int          AxiLite           = 1,     // 1: with
-    parameter int          Wishbone          = 0,     // 1: classic, 2: pipelined
-    parameter int          Uart              = 0,     // 1: with
-    parameter int          Spi               = 0,     // 1: with
-    parameter int          BreakBits         = 20     // of the UART: a break is 2^BreakBits clocks, 8 to 24
+    parameter int          AxiLite           = 1,     // 0: without this port
+    parameter int          Wishbone          = 0,     // 0: without this port, 1: classic, 2: pipelined
+    parameter int          Uart              = 0,     // 0: without this port
+    parameter int          Spi               = 0,     // 0: without this port
+    parameter int          BreakBits         = 20     // a break on the UART lasts 2^BreakBits clocks, 8 to 24
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     // straps
     input wire logic [31:0] clock_hz_i,
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
-    input wire logic emergency_stop_level_i,  // of the pin: the level that means stop
+    input wire logic emergency_stop_level_i,  // level of the pin that means stop
     // AXI4-Lite
     input wire logic awvalid_i,
     output logic awready_o,
@@ -68,7 +68,7 @@ module card_with_ports #(
     input wire logic cs_n_i,
     input wire logic mosi_i,
     output logic miso_o,
-    output logic miso_enable_o,  // low: MISO is for others
+    output logic miso_enable_o,  // low: another device may drive MISO
     // pins
     input wire logic [Inputs-1:0] input_i,
     input wire logic emergency_stop_i,
@@ -79,8 +79,8 @@ module card_with_ports #(
     // for lockstep; a board leaves it open
     output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
-  // The reset is registered once for all blocks: it takes effect a clock later. The ports take the pin as
-  // well: AXI and Wishbone want no answer in the first clock after a reset, even of one clock.
+  // One register delays the reset for all blocks, so it takes effect one clock later. The ports also take the pin
+  // itself: AXI and Wishbone require no answer in the first clock after a reset, even if the reset lasts one clock.
   logic rst_q;
   logic port_rst;
   always_ff @(posedge clk_i) rst_q <= rst_i;

@@ -1,25 +1,25 @@
-// The drives part: what tells the drives whether they may hold their axes. The enable with its brake and delays, and the
-// outputs that say that the card is healthy.
+// The drives part: tells the drives whether they may hold their axes. It has the enable with its brake and delays, and
+// the outputs that show whether the card is healthy.
 `default_nettype none
 module drives_part #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic moves_i,  // a path or a direct move takes ticks
     input wire logic busy_i,  // something runs or is queued
-    input wire logic emergency_i,  // level: the emergency stop's cause
+    input wire logic emergency_i,  // level: emergency stop
     input wire logic [31:0] fault_i,
-    input wire logic fed_i,  // the watchdog runs
+    input wire logic fed_i,  // the watchdog is running
     output logic enabled_o,
-    output logic released_o,  // the brake is
+    output logic released_o,  // the brake is released
     output logic healthy_o,
-    output logic pump_o,  // the charge pump's square wave
-    output logic wait_o,  // no tick is taken
+    output logic pump_o,  // square wave of the charge pump
+    output logic wait_o,  // no tick may be taken
     output logic waiting_o,  // motion waits for the enable (combinational)
-    output logic [Axes-1:0] disabled_o  // events: the axis loses its place (combinational)
+    output logic [Axes-1:0] disabled_o  // events: the axis's drive is disabled (combinational)
 );
   if (Engines[card_map_pkg::ENGINE_ENABLES]) begin : gen_enables
     drive_enable #(

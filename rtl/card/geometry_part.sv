@@ -1,24 +1,24 @@
-// The geometry part: which way a tick goes. Decodes the geometry's commands and direct moves, runs one path after the other,
-// and carries out at their place on the path what is no motion.
+// The geometry part: decides which steps each tick makes. It decodes geometry commands and direct moves, runs one path
+// after the other, and carries out commands that are not motion at their place on the path.
 `default_nettype none
 
 module geometry_part #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1,  // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          Outputs = 4
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
-    // the geometry's queue, and what arrives in both
+    // the geometry queue, and arrivals of both queues
     input wire logic empty_i,
     input wire logic [15:0] word_i,
     output logic read_o,
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     // the other parts
     input wire logic [feed_pkg::WIDTH-1:0] feed_i,
-    input wire logic take_i,  // the tick is taken in this clock (combinational)
+    input wire logic take_i,  // a tick is taken in this clock (combinational)
     input wire logic [engines_pkg::WIDTH-1:0] engines_i,
     output logic [path_pkg::WIDTH-1:0] path_o,
     output logic [load_bus_pkg::WIDTH-1:0] load_o,
@@ -26,15 +26,15 @@ module geometry_part #(
     // START
     input wire logic [start_pkg::WIDTH-1:0] start_i,
     output logic [start_answer_pkg::WIDTH-1:0] start_answer_o,
-    input wire logic closed_i,  // a fault stands
-    input wire logic busy_i,  // anything runs, is decoded or queued
-    input wire logic rest_i,  // nothing does
+    input wire logic closed_i,  // no command and no START is accepted
+    input wire logic busy_i,  // something runs, is decoded or queued
+    input wire logic rest_i,  // nothing runs, is decoded or queued
     // pins, MARK and probe
     input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
     output logic [Outputs-1:0] output_o,
-    output logic mark_o,  // event: a snapshot is wanted
-    output logic probe_o,  // event: a snapshot is wanted (combinational)
+    output logic mark_o,  // event: requests a snapshot
+    output logic probe_o,  // event: requests a snapshot (combinational)
     input wire logic probe_clear_i,  // event
     // status
     output logic [pins_state_pkg::WIDTH-1:0] pins_state_o,

@@ -1,9 +1,9 @@
-// The inputs part: what the card hears from the machine. Levels and roles of the inputs, captures of their edges, and the
-// emergency stop, whose latch needs no clock.
+// The inputs part: all signals that the card receives from the machine. It has the levels and roles of the inputs, the
+// captures of their edges, and the emergency stop, whose latch works without a clock.
 `default_nettype none
 module inputs_part #(
     parameter int          Axes     = 4,
-    parameter logic [31:0] Engines  = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines  = '1,  // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          Captures = 4,   // 0 to 4 units
     parameter int          Inputs   = 4    // 1 to 32
 ) (
@@ -21,9 +21,9 @@ module inputs_part #(
     input wire logic emergency_stop_i,
     input wire logic emergency_stop_level_i,  // strap: the level that means stop
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
-    input wire logic filling_i,  // after a reset the registers are not ready for a snapshot
-    output logic latched_o,  // its latch: asynchronous
-    output logic emergency_o  // level: the cause
+    input wire logic filling_i,  // after a reset: the registers are not yet ready for a snapshot
+    output logic latched_o,  // latch of the emergency stop (asynchronous)
+    output logic emergency_o  // level: emergency stop, a cause of a stop
 );
   card_inputs #(
       .Axes(Axes),
@@ -60,7 +60,8 @@ module inputs_part #(
   if (Engines[card_map_pkg::ENGINE_EMERGENCY_STOP]) begin : gen_emergency_stop
     logic stop;
 
-    // Nothing can move before the registers are ready, and the latch holds drives and outputs meanwhile.
+    // The cause is withheld until the registers are ready. Nothing can move before, and the latch already holds drives
+    // and outputs.
     assign emergency_o = stop && !filling_i;
 
     emergency_stop pin (
@@ -73,7 +74,7 @@ module inputs_part #(
         .stop_o (stop)
     );
 
-    logic unused;  // the other causes are stop_control's
+    logic unused;  // stop_control clears the other faults
     assign unused = &{1'b0, clear_fault_i};
   end else begin : gen_no_emergency_stop
     assign emergency_o = 1'b0;

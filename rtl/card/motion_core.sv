@@ -1,15 +1,15 @@
-// What moves, in three parts: the time part says when a tick comes, the geometry part which way it goes, the motion part
-// makes steps at the pins.
+// The motion of the card, in three parts: the time part decides when a tick comes, the geometry part decides which
+// steps it makes, and the motion part makes the pulses at the pins.
 `default_nettype none
 
 module motion_core #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1,  // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          Outputs = 4
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     // queues
     input wire logic geometry_empty_i,
@@ -25,21 +25,21 @@ module motion_core #(
     // stops
     input wire logic abort_i,  // event
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
-    input wire logic session_gone_i,  // the one that wrote the stream is no more
+    input wire logic session_gone_i,  // the session that wrote the stream has been replaced by another
     input wire logic link_lost_i,
     output logic cut_o,  // event
-    output logic closed_o,  // no command and no START is taken
+    output logic closed_o,  // no command and no START is accepted
     // inputs
-    input wire logic emergency_stop_i,  // level: the cause, with the engine emergency_stop
-    input wire logic latched_i,  // its latch: asynchronous
+    input wire logic emergency_stop_i,  // level: emergency stop, with the engine emergency_stop
+    input wire logic latched_i,  // latch of the emergency stop (asynchronous)
     input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,  // with the engine machine_inputs
     // pins of path commands
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
     output logic [Outputs-1:0] output_o,
     input wire logic probe_clear_i,  // event
-    // snapshots: FAULT and STATUS come in, POSITION of the last axis goes out first
-    output logic stop_o,  // events: a snapshot is wanted
+    // snapshots: FAULT and STATUS come in, POSITION of the last axis leaves first
+    output logic stop_o,  // events: each requests a snapshot
     output logic rest_o,  // combinational
     output logic mark_o,
     output logic probe_o,  // combinational

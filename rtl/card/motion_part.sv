@@ -1,19 +1,19 @@
-// The motion part: from ticks to pins, by the path engines and the axes that they move.
+// The motion part: turns ticks into pulses at the pins, by the path engines and the axes that they move.
 `default_nettype none
 
 module motion_part #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     // the path
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic [move_pkg::WIDTH-1:0] move_i,
-    input wire logic halt_i,  // event: the path ends here
+    input wire logic halt_i,  // event: the path under way ends here
     input wire logic tick_i,
     input wire logic silent_i,  // ticks make no steps
     output logic [engines_pkg::WIDTH-1:0] engines_o,

@@ -1,49 +1,49 @@
-// The time part: when a tick comes. The feed's pieces and the time base make ticks; stop_control holds the time base and
-// cuts.
+// The time part: decides when a tick comes. Feed pieces and the time base make the ticks; stop_control holds the time
+// base and cuts.
 `default_nettype none
 
 module time_part #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
-    // the feed's queue, and what arrives in both
+    // the feed queue, and arrivals of both queues
     input wire logic empty_i,
     input wire logic [15:0] word_i,
     output logic read_o,
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     // the other parts
     input wire logic [path_pkg::WIDTH-1:0] path_i,
-    input wire logic ready_i,  // the path's engine takes ticks
-    input wire logic finished_i,  // and has finished all that were given
+    input wire logic ready_i,  // the path's engine accepts ticks
+    input wire logic finished_i,  // the path's engine has finished all ticks given so far
     input wire logic quiet_i,  // no path tick waits or makes a step
     input wire logic pulses_i,  // an axis is busy
     input wire logic swap_i,  // a path begins
     input wire logic busy_i,  // something runs or is queued
     output logic [feed_pkg::WIDTH-1:0] feed_o,
-    output logic take_o,  // the tick is taken in this clock (combinational)
+    output logic take_o,  // a tick is taken in this clock (combinational)
     output logic tick_o,
     // stops
     input wire logic [Axes-1:0] step_fault_i,  // events
-    input wire logic emergency_stop_i,  // level: the cause
-    input wire logic latched_i,  // its latch: asynchronous
+    input wire logic emergency_stop_i,  // level: emergency stop
+    input wire logic latched_i,  // latch of the emergency stop (asynchronous)
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
     input wire logic [axis_observe_pkg::WIDTH*Axes-1:0] axes_i,
     input wire logic path_active_i,
     input wire logic direct_active_i,
     input wire logic abort_i,  // event
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
-    input wire logic session_gone_i,  // the one that wrote the stream is no more
+    input wire logic session_gone_i,  // the session that wrote the stream has been replaced by another
     input wire logic link_lost_i,
     output logic cut_o,  // event
-    output logic stop_o,  // event: a snapshot is wanted
-    output logic rest_o,  // likewise, of the area REST (combinational)
-    output logic closed_o,  // no command and no START is taken
+    output logic stop_o,  // event: requests a snapshot
+    output logic rest_o,  // event: requests a snapshot for the area REST (combinational)
+    output logic closed_o,  // no command and no START is accepted
     // status
-    input wire logic card_idle_i,  // nothing runs, is decoded or queued; up to four clocks late
-    output logic idle_o,  // the feed is (combinational)
+    input wire logic card_idle_i,  // nothing runs, is decoded or queued; delayed by up to four clocks
+    output logic idle_o,  // the feed is idle (combinational)
     output logic [time_state_pkg::WIDTH-1:0] time_state_o,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o
@@ -66,8 +66,8 @@ module time_part #(
   logic button;
   logic soft_limit;
   logic [stop_causes_pkg::WIDTH-1:0] causes;
-  logic [Axes-1:0] step;  // on the path
-  logic [Axes-1:0] dir;  // of each axis's last one: 1 backwards, 0 forwards
+  logic [Axes-1:0] step;  // steps on the path
+  logic [Axes-1:0] dir;  // direction of each axis's last step: 1 backwards, 0 forwards
 
   assign at_rest = ratio == 17'd0;
   assign feed_o[feed_pkg::AT_REST] = at_rest;

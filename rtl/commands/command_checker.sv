@@ -1,15 +1,16 @@
-// Takes the words of the stream, judges them halfword by halfword against the layouts of rtl/regs/commands.toml and
-// passes good commands on in their stored form: halfword 1 and padding left out.
+// Takes the words of the stream, judges them halfword by halfword against the layouts of rtl/regs/commands.toml, and
+// passes good commands on in their stored form, without halfword 1 and padding.
 //
-// A word written at c stands on word_i until it is answered, at c+6, when it is ready again: refuse says that it is refused. A refusal drops the
-// command whole and closes the stream until clear_i; a closed stream answers at c+2. So does a fault (closed_i), whose
-// refusal changes nothing else: the cut that comes with it clears all there is. A write while it is not ready is ignored.
-// flush_i waits for a word under way and comes before one beside it. A word under way at clear_i is dropped without a
-// refusal. number is that in the last header, reason the last refusal's.
+// A word written at c stays on word_i until it is answered, at c+6, when the checker is ready again; refuse says
+// whether the word is refused. A refusal drops the whole command and closes the stream until clear_i; a closed stream
+// answers at c+2. During a fault (closed_i) the answer also comes at c+2; this refusal changes nothing else, since the
+// cut that comes with the fault clears everything. A write while the checker is not ready is ignored. flush_i waits for
+// a word under way, and goes before a word in the same clock. A word under way at clear_i is dropped without a refusal.
+// number is that of the last header, reason that of the last refusal.
 `default_nettype none
 module command_checker #(
     parameter int Axes = 4,  // 1 to 8
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -24,22 +25,22 @@ module command_checker #(
     output logic [stream_answer_pkg::WIDTH-1:0] answer_o
 );
 
-  // A word's way, one clock each: either halfword is examined and judged, then the word is answered.
+  // The way of a word, one clock each: either halfword is examined and judged, then the word is answered.
   logic low_q;
   logic low_judge_q;
   logic high_q;
   logic high_judge_q;
   logic answer_q;
 
-  logic [15:0] halfword_q;  // under way: the lower one, but while the upper one is examined and judged
+  logic [15:0] halfword_q;  // halfword under way: the lower one, except while the upper one is examined and judged
   logic ready_q;
   logic partial_q;
   logic refuse_q;
   logic [7:0] reason_q;
   logic open_q;
-  logic faulted_q;  // the word came while a fault stood
+  logic faulted_q;  // the word came during a fault
   logic flush_q;
-  logic [4:0] left_q;  // words to come: at most 25, ARC_CHORD
+  logic [4:0] left_q;  // words to come: at most 25, for ARC_CHORD
   logic restart;
   logic truncate;
   logic last;
@@ -61,7 +62,7 @@ module command_checker #(
 
   assign answer_o = stream_answer_pkg::pack(partial_q, ready_q, refuse_q, number, reason_q);
 
-  // What is stored. No command is larger than 50 halfwords of geometry or 20 of feed.
+  // Halfwords to store. No command is larger than 50 halfwords of geometry or 20 of feed.
   logic [15:0] stored_q;
   logic geometry_write_q;
   logic geometry_commit_q;
@@ -76,7 +77,7 @@ module command_checker #(
   assign arrival_o[arrival_pkg::DROP] = drop_q;
   assign arrival_o[arrival_pkg::FULL] = geometry_room_i[15:6] == 10'd0 || feed_room_i[15:5] == 11'd0;
 
-  // Nothing moves but for a word under way and the clock after it, in which the pulses fall.
+  // The state changes only during a word and in the clock after it, in which the pulses fall.
   logic awake;
   logic awake_q;
   assign awake = restart || write_i || flush_i || awake_q;
@@ -89,7 +90,7 @@ module command_checker #(
   assign judged   = answer_q && open_q && !faulted_q;
   assign refused  = judged && (partial_q ? field_bad : header_bad);
   assign accepted = judged && partial_q && last && !field_bad;
-  // The first halfword waits for its header's verdict: before that there may be no room for it.
+  // The first halfword is stored only after the header is accepted: before that there may be no room for it.
   assign store    = partial_q ? low_judge_q || (high_judge_q && !padding) : judged && !refused;
 
   command_header #(
@@ -176,7 +177,7 @@ module command_checker #(
         feed_commit_q <= accepted && to_feed;
         drop_q <= refused || truncate;
         refuse_q <= refused || truncate || (answer_q && !judged);
-        // Never both: an answer comes while ready_q is low, a flush is heard while it is high.
+        // Never both: an answer comes while ready_q is low, a flush takes effect while it is high.
         if (answer_q) begin
           if (faulted_q) reason_q <= card_map_pkg::REFUSE_FAULTED;
           else if (!open_q) reason_q <= card_map_pkg::REFUSE_STREAM_CLOSED;

@@ -1,10 +1,10 @@
-// Reads commands from a queue, one ahead: header first, then the payload field by field.
+// Reads commands from a queue, one command ahead: header first, then the payload field by field.
 //
-// A command lies in the queue as {mask, opcode}, three halfwords of count, payload. The decoder around the fetch knows
-// the fields: it names the first field and the next one with their lengths, and gets each halfword back with its field.
-// Timing: a halfword asked for with `read_o` in cycle r lies on the queue's output in r+2, on the load bus in r+3 and in
-// its chain from r+4; `valid_o` rises in r+3 after the last read, so that a swap decided then and carried out one clock
-// later meets the whole chain. Fields that are loaded after the swap are read once the command is taken.
+// In the queue a command is {mask, opcode}, three halfwords of count, payload. The decoder around the fetch knows the
+// fields: it names the first field and the next one with their lengths, and gets each halfword back with its field.
+// Timing: a halfword requested with `read_o` in cycle r is on the queue's output in r+2, on the load bus in r+3 and in
+// its chain from r+4. `valid_o` rises in r+3 after the last read, so that a swap that is decided then and carried out
+// one clock later meets the whole chain. Fields that are loaded after the swap are read once the command is taken.
 `default_nettype none
 
 module command_fetch (
@@ -23,20 +23,20 @@ module command_fetch (
     input wire logic [4:0] next_field_i,
     input wire logic [2:0] next_length_i,
     input wire logic last_field_i,
-    input wire logic rest_i,  // fields are left when the command is taken
-    input wire logic wait_i,  // the next field, with first_o the first one, must wait
+    input wire logic rest_i,  // fields are left to read when the command is taken
+    input wire logic wait_i,  // the next field (with first_o: the first one) must wait
     output logic header_o,  // {mask, opcode} is on word_i
     output logic first_o,  // the first field is taken up now (combinational)
     output logic advance_o,  // the next field is taken up now (combinational)
-    output logic [4:0] field_o,  // field being read, or the one that waits
+    output logic [4:0] field_o,  // the field that is being read or waits
     // halfwords on their way, aligned with word_i
     output logic of_count_o,
     output logic of_field_o,
-    output logic [4:0] which_o,  // the field
+    output logic [4:0] which_o,  // field of the halfword
     // header
     output logic [7:0] opcode_o,
     output logic [7:0] mask_o,
-    output logic idle_o,  // nothing read or decoded
+    output logic idle_o,  // nothing is read or decoded
     output logic valid_o  // a command is decoded
 );
   typedef enum logic [2:0] {
@@ -54,7 +54,7 @@ module command_fetch (
   logic   [2:0] left_q;  // halfwords left in the field, less one
   logic         field_done;
 
-  // What was read 1 and 2 clocks ago.
+  // Reads made 1 and 2 clocks ago.
   logic         header_1_q;
   logic         payload_1_q;
   logic         first_1_q;
@@ -97,7 +97,7 @@ module command_fetch (
       read_o  <= state_d == HEADER || state_d == PAYLOAD || state_d == REST;
       valid_o <= state_d == VALID;
       idle_o  <= state_d == IDLE;
-    end else if (pop_i) begin  // it comes late: it reaches no more than it must
+    end else if (pop_i) begin  // pop_i comes late, so it drives as little as possible
       state_q <= rest_i ? REST : IDLE;
       read_o  <= rest_i;
       valid_o <= 1'b0;
@@ -106,9 +106,9 @@ module command_fetch (
   end
 
   always_ff @(posedge clk_i) begin : p_fetch
-    // Nothing moves while there is nothing to read and nothing on its way, or what was read waits.
+    // The state changes only while there is something to read or on its way, and no decoded command waits.
     if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !of_field_o))) begin
-      // 0 in the first clock of either state, without waiting for what comes next: HEADER has four clocks.
+      // step_q is 0 in the first clock of either state. It need not look at the next state: HEADER has four clocks.
       step_q <= state_q == HEADER || state_q == TAIL ? step_q + 2'd1 : 2'd0;
 
       if (first_o) begin

@@ -1,8 +1,8 @@
 // Judges the halfwords of a command after its header: count, payload fields, padding.
 //
-// Two clocks a halfword with halfword_i held: examine_i, then judge_i. restart_i (high until a header has passed) begins a
-// command; op_i must be there in the judge_i that comes before the first halfword, where the table is read ahead.
-// The verdict stands from the clock after a bad halfword's judge_i to the next restart_i.
+// Each halfword takes two clocks with halfword_i held: examine_i, then judge_i. restart_i (high until a header has
+// passed) begins a command. op_i must be valid in the judge_i before the first halfword, in which the table is read
+// ahead. After a bad halfword the verdict is valid from the clock after its judge_i to the next restart_i.
 `default_nettype none
 module command_fields #(
     parameter logic [31:0] Engines = '1
@@ -17,7 +17,7 @@ module command_fields #(
     input wire logic [7:0] op_i,
     input wire logic [7:0] mask_i,
     output logic bad_o,
-    output logic bad_mask_o    // with bad_o: what is bad is the plane, which differs from the mask
+    output logic bad_mask_o    // with bad_o: the plane is bad, it differs from the mask
 );
 
   localparam int FIELD_END = card_map_pkg::CHECK_FIELD_END;
@@ -27,15 +27,15 @@ module command_fields #(
   localparam int SIGNED_LIMIT = card_map_pkg::CHECK_SIGNED_LIMIT;
   localparam int PLANE = card_map_pkg::CHECK_PLANE;
 
-  // Where the next halfword lies, and what the table says of the present one.
+  // Position of the next halfword, and the table's entry for the present one.
   logic in_count_q;
   logic [5:0] index_q;
-  // The part of the payload that comes once an axis. Set by the count's halfwords, long before they are asked.
+  // The part of the payload that is repeated per axis. It is set by the count's halfwords, long before it is used.
   logic [5:0] repeat_from_q;
   logic [5:0] repeat_after_q;
   logic [15:0] allowed_q;
   logic [5:0] checks_q;
-  // What was found in the present halfword and, of the same field, below it.
+  // Findings in the present halfword and, for the same field, in the halfwords below it.
   logic not_allowed_q;
   logic not_zero_q;
   logic below_not_zero_q;
@@ -84,11 +84,11 @@ module command_fields #(
     if (examine_i) begin
       not_allowed_q <= (halfword_i & ~allowed_q) != 16'd0;
       not_zero_q <= halfword_i != 16'd0;
-      // In the highest halfword of a field whose limit is 2^40 either way; other halfwords are not asked.
+      // For the highest halfword of a field whose limits are +-2^40; the result is not used for other halfwords.
       over_limit_q <= halfword_i[15:8] != 8'h00 && halfword_i[15:8] != 8'hFF &&
                       (halfword_i != 16'h0100 || below_not_zero_q);
       off_plane_q <= !mask_i[halfword_i[6:4]] || !mask_i[halfword_i[10:8]] || halfword_i[6:4] == halfword_i[10:8];
-      // Where a field may be at most the count, it is the first one: the count leaves beside it, lowest halfword first.
+      // Only a first field can have the count as its limit: the count is shifted out beside it, lowest halfword first.
       count_q <= {halfword_i, count_q[47:16]};
     end
   end

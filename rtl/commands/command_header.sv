@@ -1,8 +1,8 @@
-// Judges a command's first word and keeps what the rest of the command needs of it: opcode, mask, number, size.
+// Judges a command's first word, and keeps the values that the rest of the command needs: opcode, mask, number, size.
 //
-// The bits of phase_i are high in turn, one clock each, with the header's halfword 0 (phases 0 and 1) and 1 (2 and 3) on
-// halfword_i. The verdict stands from the clock after the last phase to the next header. In doubt the order of
-// reasons is that of the checks: opcode, mask, length, number, room.
+// The bits of phase_i are high in turn, one clock each, with the header's halfword 0 (phases 0 and 1) and 1 (2 and 3)
+// on halfword_i. The verdict is valid from the clock after the last phase to the next header. If several checks fail,
+// the reason is that of the first in this order: opcode, mask, length, number, room.
 `default_nettype none
 module command_header #(
     parameter int Axes = 4,  // 1 to 8
@@ -11,7 +11,7 @@ module command_header #(
     input wire logic clk_i,
     input wire logic restart_i,
     input wire logic [3:0] phase_i,
-    input wire logic accept_i,  // the command is committed: its successor is due
+    input wire logic accept_i,  // the command is committed: the next number is expected
     input wire logic [15:0] halfword_i,
     input wire logic [15:0] geometry_room_i,
     input wire logic [15:0] feed_room_i,
@@ -20,7 +20,7 @@ module command_header #(
     output logic [7:0] number_o,
     output logic to_geometry_o,
     output logic to_feed_o,
-    output logic [5:0] stored_o,  // halfwords in the queue: at most 50, ARC_CHORD
+    output logic [5:0] stored_o,  // halfwords in the queue: at most 50, for ARC_CHORD
     output logic bad_o,
     output logic [7:0] reason_o
 );
@@ -54,7 +54,7 @@ module command_header #(
       unknown_q <= !card_map_pkg::command_known(op_o, Engines);
       to_geometry_o <= card_map_pkg::command_to_geometry(op_o, Engines);
       to_feed_o <= card_map_pkg::command_to_feed(op_o, Engines);
-      // Of the axes in the mask some stand in the fixed part.
+      // The fixed part of the command contains some of the axes in the mask.
       base = card_map_pkg::command_base_halfwords(op_o, Engines);
       axes_in_base = card_map_pkg::command_axes_in_base(op_o, Engines);
       per_axis = card_map_pkg::command_halfwords_per_axis(op_o, Engines);
@@ -74,7 +74,7 @@ module command_header #(
         default: mask_bad = moving_q != 4'd0;
       endcase
       mask_bad_q <= mask_bad;
-      // Halfword 1 is not stored, which also rounds the words after the first: stored / 2, rounded down.
+      // Halfword 1 is not stored, which also rounds: the words after the first are stored / 2, rounded down.
       stored_o   <= base_q + 6'(per_axis_q * moving_q);
     end
     if (phase_i[3]) begin

@@ -2,7 +2,7 @@
 `default_nettype none
 module command_stream #(
     parameter int          Axes          = 4,     // 1 to 8
-    parameter logic [31:0] Engines       = '1,    // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines       = '1,    // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth     = 2560
 ) (
@@ -11,9 +11,9 @@ module command_stream #(
     input wire logic cut_i,
     // registers
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
-    input wire logic write_i,  // a word of the stream is on the setting bus, and stands until it is answered
+    input wire logic write_i,  // a word of the stream is on the setting bus, where it stays until it is answered
     input wire logic flush_i,
-    input wire logic closed_i,  // a fault stands
+    input wire logic closed_i,  // no command is accepted
     output logic [stream_answer_pkg::WIDTH-1:0] answer_o,
     output logic [queue_state_pkg::WIDTH-1:0] queue_state_o,
     // queues

@@ -1,8 +1,8 @@
-// START: reads the direct-mode registers, checks them, shifts them into the chains of the masked axes and starts the move.
+// START: reads the direct-mode registers, checks them, shifts them into the chains of the masked axes, starts the move.
 //
-// The chains are loaded while they are checked: nothing takes them up before `go_o`, and the next command or START
-// loads them afresh. A read has 4 clocks: the address is a register, its data lies there two clocks later, and the two
-// halfwords are taken in the last clock and the next.
+// The chains are loaded while the registers are checked: nothing takes them up before `go_o`, and the next command or
+// START loads them again. A read takes 4 clocks: the address is a register, its data arrives two clocks later, and the
+// two halfwords are taken in the last clock and the next.
 `default_nettype none
 
 module direct_loader #(
@@ -10,8 +10,8 @@ module direct_loader #(
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic busy_i,  // anything runs, is decoded or queued
-    input wire logic closed_i,  // a fault stands
+    input wire logic busy_i,  // something runs, is decoded or queued
+    input wire logic closed_i,  // no command and no START is accepted
     // registers
     input wire logic [start_pkg::WIDTH-1:0] start_i,
     output logic [start_answer_pkg::WIDTH-1:0] answer_o,
@@ -57,12 +57,12 @@ module direct_loader #(
 
   // Judgement.
   logic          negative_q;
-  logic          carry_q;  // of the serial negation
-  logic          frequency_any_q;  // a one in the frequency so far
+  logic          carry_q;  // carry of the serial negation
+  logic          frequency_any_q;  // the frequency has had a one so far
   logic          length_any_q;
   logic          bad_q;
 
-  // Registers' side.
+  // Signals of the registers.
   logic          start;
   logic   [ 7:0] mask;
   logic   [31:0] data;
@@ -86,9 +86,9 @@ module direct_loader #(
     logic [15:0] negated;
     logic [ 3:0] target;
 
-    // At rest nothing moves, once done_q and go_o have fallen again.
+    // The state does not change at rest, once done_q and go_o have fallen again.
     if (rst_i || start || state_q != IDLE || done_q) begin
-      // A fault that came in between counts: the move must not wait for FAULT to be cleared.
+      // A fault that came in the meantime counts: the move must not wait for FAULT to be cleared.
       closed = closed_q || (state_q == DECIDE && closed_i);
       refused = bad_mask_q || closed || busy_q || bad_q;
       axis_last = axis_q == 3'd7;
@@ -97,7 +97,7 @@ module direct_loader #(
       raw_any = raw_q != 16'd0;
       negated = (raw_q ^ {16{negative_q && frequency_q}}) + {15'd0, carry_q && frequency_q};
 
-      // Each stage before the one that feeds it.
+      // The pipeline's stages in reverse order: each before the one that feeds it.
       target = count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT;
       load_o <= load_bus_pkg::pack(
           (frequency_q || count_q || length_q) && !rst_i,
@@ -169,7 +169,7 @@ module direct_loader #(
           step_q <= 5'd0;
           if (start) state_q <= CHECK;
         end
-        // The clocks in which a command just committed makes the card busy.
+        // Long enough for a command that was just committed to make the card busy.
         CHECK: begin
           if (step_q == 5'd7) begin
             step_q  <= 5'd0;

@@ -1,10 +1,10 @@
 // Decodes the next feed piece onto the feed load. Acceleration and jerk have no shadow in the generator: while a piece
-// runs they follow when the next one has begun. WAIT_INPUT's condition goes to a target that is nobody's: the geometry's
-// decoder has it.
+// runs, they follow when the next one has begun. The condition of WAIT_INPUT goes to a target that no block reads,
+// since the geometry decoder has it, too.
 `default_nettype none
 
 module feed_decoder #(
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -16,9 +16,9 @@ module feed_decoder #(
     output logic read_o,
     output logic [feed_load_pkg::WIDTH-1:0] load_o,
     output logic piece_o,
-    output logic [1:0] class_o,  // of the piece
-    output logic silent_o,  // its ticks make no steps
-    output logic [1:0] slew_shift_o,  // in it SLEW is doubled so often
+    output logic [1:0] class_o,  // class of the piece
+    output logic silent_o,  // the ticks of the piece make no steps
+    output logic [1:0] slew_shift_o,  // doublings of SLEW in the piece
     output logic barrier_o,
     output logic probe_end_o,
     output logic idle_o,
@@ -27,7 +27,7 @@ module feed_decoder #(
   logic [4:0] field;
   logic       of_count;  // word_i is of the count
   logic       of_field;  // word_i is of a field
-  logic [4:0] which;  // that field
+  logic [4:0] which;  // the field of word_i
   logic [7:0] opcode;
   logic [7:0] mask;
   logic       is_feed;
@@ -42,7 +42,7 @@ module feed_decoder #(
 
   assign pause = active_i && field[2:0] == load_target_pkg::FEED_STOP_DISTANCE;
 
-  // Fields are targets of the feed load, and follow each other as these do.
+  // Fields have the numbers of the feed load's targets, in the same order.
   function automatic logic [2:0] length_of(input logic [2:0] target);  // halfwords, less one
     length_of = (target == load_target_pkg::FEED_FLOOR || target == load_target_pkg::FEED_STOP_DISTANCE) ? 3'd1 : 3'd3;
   endfunction

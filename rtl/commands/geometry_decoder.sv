@@ -1,22 +1,22 @@
-// Decodes the next geometry command onto the load bus: a line's increments to the axes, an arc's state to the path
+// Decodes the next geometry command onto the load bus: a line's increments go to the axes, an arc's state to the path
 // engines, the count to the count chain. The direct loader's halfwords go through the same register.
 //
 // OUTPUT's masks, the fields of PWM and the conditions of PROBE and WAIT_INPUT go to the path commands.
 //
-// The engines have no second set of registers: what follows an arc's prescaler waits until the engine takes it. A line's
-// increments wait while the axes' shadows are the arc generator's.
+// The engines have no second set of registers: the fields after an arc's prescaler wait until the engine accepts them.
+// A line's increments wait while the arc generator uses the axes' shadows.
 `default_nettype none
 
 module geometry_decoder #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
     input wire logic pop_i,
     input wire logic payload_ready_i,  // the engine's state may be loaded
-    input wire logic shadows_free_i,  // so may increments
+    input wire logic shadows_free_i,  // increments may be loaded
     input wire logic empty_i,
     input wire logic [15:0] word_i,
     output logic read_o,
@@ -24,8 +24,8 @@ module geometry_decoder #(
     output logic [load_bus_pkg::WIDTH-1:0] load_o,
     // the decoded command
     output logic [Axes-1:0] mask_o,
-    output logic [4:0] engine_o,  // what a path runs on, by its number, card_map_pkg::ENGINE_*
-    output logic barrier_o,  // no path
+    output logic [4:0] engine_o,  // number of the path's engine, card_map_pkg::ENGINE_*
+    output logic barrier_o,  // the command is not a path
     output logic output_o,
     output logic mark_o,
     output logic pwm_o,
@@ -39,7 +39,7 @@ module geometry_decoder #(
   logic       first;
   logic       advance;
   logic [4:0] field;
-  logic [4:0] next_q;  // the field after this one, where fields go by their number
+  logic [4:0] next_q;  // the field after this one, if fields go by number
   logic [2:0] numbered_length;
   logic [2:0] next_length;
   logic [4:0] lowest;
@@ -50,8 +50,8 @@ module geometry_decoder #(
   logic       header;
   logic       of_count;  // word_i is of the count
   logic       of_field;  // word_i is of a field
-  logic [4:0] which;  // that field
-  logic [8:0] place;  // where it goes: unit and target of the load bus
+  logic [4:0] which;  // the field of word_i
+  logic [8:0] place;  // its destination: unit and target of the load bus
   logic [8:0] of_line;
   logic [8:0] of_arc;
   logic [8:0] of_chord;
@@ -65,17 +65,18 @@ module geometry_decoder #(
   logic       is_pwm_q;
   logic       is_probe_q;
   logic       is_wait_q;
-  logic       has_words;  // for the path commands
-  logic       at_axes;  // of an arc in chords only increments of further axes are left
+  logic       has_words;  // the command has words for the path commands
+  logic       at_axes;  // arc in chords: only increments of further axes are left
   logic       to_axis;  // the next field is an axis's increment
   logic       on_engine;
   logic       at_prescaler;
   logic [7:0] rest_q;  // axes of the mask whose increments are still to come
-  logic [2:0] axis_x_q;  // of an arc's plane
+  logic [2:0] axis_x_q;  // axes of an arc's plane
   logic [2:0] axis_y_q;
-  logic       plane;  // is on word_i
+  logic       plane;  // the plane is on word_i
 
-  // Taken from the header beside the opcode: from that the way to the next field would be the card's longest.
+  // Taken from the header together with the opcode: from the opcode, the path to the next field would be the card's
+  // longest.
   always_ff @(posedge clk_i) begin
     if (header) begin
       is_line_q   <= word_i[7:0] == card_map_pkg::OP_LINE;
@@ -89,10 +90,10 @@ module geometry_decoder #(
     end
   end
   assign has_words = is_output_q || is_pwm_q || is_probe_q || is_wait_q;
-  assign on_engine = is_arc_q || is_chord_q;  // another than lines: fields go by their number
+  assign on_engine = is_arc_q || is_chord_q;  // not on lines: fields go by number
   assign mask_o    = mask[Axes-1:0];
 
-  logic unused;  // absent axes: the checker lets no command for them in
+  logic unused;  // bits of absent axes: the checker accepts no command for them
   assign unused = &{1'b0, mask};
 
   function automatic logic [4:0] lowest_axis(input logic [7:0] axes);
@@ -100,7 +101,7 @@ module geometry_decoder #(
     for (int i = 6; i >= 0; i--) if (axes[i]) lowest_axis = 5'(i);
   endfunction
 
-  // Where an arc's fields go. The path ticks go nowhere: the prescaler makes exactly as many.
+  // Destinations of an arc's fields. The path ticks go nowhere: the prescaler makes exactly as many.
   function automatic logic [8:0] arc_target(input logic [4:0] number);
     case (number)
       card_map_pkg::FIELD_ARC_PRESCALE: arc_target = load_target_pkg::PRESCALE;
@@ -117,7 +118,8 @@ module geometry_decoder #(
     endcase
   endfunction
 
-  // The same of an arc in chords; an axis's increment goes to the target of its number, and as a field it is AXIS and that.
+  // Destinations of the fields of an arc in chords. An axis's increment is the field AXIS + axis, and goes to that
+  // axis.
   localparam logic [4:0] AXIS = 5'd16;
   function automatic logic [8:0] chord_target(input logic [4:0] number, input logic [2:0] x, input logic [2:0] y);
     case (number)
@@ -135,11 +137,11 @@ module geometry_decoder #(
     endcase
   endfunction
 
-  // The fields of a command that is no path are numbered up to here: none that waits has such a number.
+  // The fields of a command that is not a path have numbers up to this one; no field that waits has such a number.
   localparam logic [4:0] LAST_OF_COMMAND = 5'd11;
 
-  // All paths begin with a field of three halfwords, those on an engine with path ticks, prescale, plane. A line's fields
-  // are its axes. An arc's in chords end with the axes outside its plane.
+  // All paths begin with a field of three halfwords; paths on an engine begin with path ticks, prescale, plane. A
+  // line's fields are its axes. The last fields of an arc in chords are the axes outside its plane.
   assign lowest = lowest_axis(rest_q);
   assign numbered_length = card_map_pkg::field_halfwords_less_one(opcode, next_q);
   assign at_prescaler = field == card_map_pkg::FIELD_ARC_PRESCALE || field == card_map_pkg::FIELD_ARC_PLANE;
@@ -162,7 +164,7 @@ module geometry_decoder #(
     next_field   = !to_axis ? next_q : is_chord_q ? AXIS | lowest : lowest;
     next_length  = to_axis ? 3'd2 : numbered_length;
     last_field   = is_arc_q ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
-    // A condition, two masks, or three fields of PWM.
+    // One condition, two masks, or three fields of PWM.
     if (has_words) begin
       first_field  = LAST_OF_COMMAND - 5'(is_output_q) - {3'd0, is_pwm_q, 1'b0};
       first_length = 3'd0;
@@ -185,8 +187,8 @@ module geometry_decoder #(
       .next_length_i(next_length),
       .last_field_i(last_field),
       .rest_i(1'b0),
-      // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
-      // runs on lines, and the engine is free.
+      // At an engine's first field `field` is still the last one of the command before. Nothing waits then: the last
+      // field of an engine is neither of the two that wait, and after a path on lines the engine is free.
       .wait_i(is_line_q ? !shadows_free_i : at_prescaler && !payload_ready_i),
       .header_o(header),
       .first_o(first),

@@ -1,8 +1,8 @@
-// Watermarks of both queues: a queue is low while fewer halfwords are in it than its watermark. What
-// watermark and room are shows two clocks later.
+// Watermarks of both queues: a queue is low while it has fewer halfwords than its watermark. Changes of watermark and
+// room are shown two clocks later.
 //
-// Queued = depth - room < watermark is looked for as watermark + room > depth: a sum, and a comparison with a constant a
-// clock later.
+// Queued = depth - room < watermark is computed as watermark + room > depth: a sum, and one clock later a comparison
+// with a constant.
 `default_nettype none
 
 module queue_watermarks #(

@@ -1,9 +1,9 @@
 `default_nettype none
 
 // AXI4-Lite slave in front of the card's inner port.
-// A write is taken when address and data are both there, a read when its address is; where both wait they take turns.
-// Ready answers valid a clock later, for one clock: the access was noted a clock before its handshake, which is safe
-// since a master keeps valid and what belongs to it until then.
+// A write is taken when address and data are both valid, a read when its address is. If both wait, they take turns.
+// Ready answers valid one clock later, for one clock. The access was recorded one clock before its handshake; this is
+// safe because a master keeps valid and the signals with it until the handshake.
 module axi4_lite_port (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -44,7 +44,7 @@ module axi4_lite_port (
   logic write_waits;
   logic read_waits;
 
-  // A new access only when its answer has a place to go.
+  // A new access is taken only if its answer has a place to go.
   assign write_waits = awvalid_i && wvalid_i && !bvalid_o;
   assign read_waits  = arvalid_i && !rvalid_o;
 

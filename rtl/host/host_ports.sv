@@ -1,12 +1,12 @@
-// The host ports that a card is built with, any of four side by side, joined to its inner port. One that is not built is not
-// looked at, and its outputs stand still.
+// The host ports that a card is built with, any of the four, joined to its inner port. The inputs of a port that is not
+// built are ignored; its outputs are constant.
 `default_nettype none
 module host_ports #(
-    parameter int AxiLite   = 1,  // 0: without
-    parameter int Wishbone  = 0,  // 1: classic, 2: pipelined
-    parameter int Uart      = 0,  // 1: with
-    parameter int Spi       = 0,  // 1: with
-    parameter int BreakBits = 20  // of the UART: a break is 2^BreakBits clocks, 8 to 24
+    parameter int AxiLite   = 1,  // 0: without this port
+    parameter int Wishbone  = 0,  // 0: without this port, 1: classic, 2: pipelined
+    parameter int Uart      = 0,  // 0: without this port
+    parameter int Spi       = 0,  // 0: without this port
+    parameter int BreakBits = 20  // a break on the UART lasts 2^BreakBits clocks, 8 to 24
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -39,12 +39,12 @@ module host_ports #(
     input wire logic cs_n_i,
     input wire logic mosi_i,
     output logic miso_o,
-    output logic miso_enable_o,  // low: MISO is for others
+    output logic miso_enable_o,  // low: another device may drive MISO
     // to the inner port
     output logic [register_access_pkg::WIDTH-1:0] access_o,
     input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
-  // Ports in the order in which they stand above: the number of each is how many are before it.
+  // Ports are numbered in the order above: the number of a port is the number of ports before it.
   localparam int WISHBONE = AxiLite != 0 ? 1 : 0;
   localparam int UART = WISHBONE + (Wishbone != 0 ? 1 : 0);
   localparam int SPI = UART + (Uart != 0 ? 1 : 0);

@@ -1,8 +1,8 @@
-// Joins several host ports in front of the card core's one. With a single port it is wires.
+// Joins several host ports in front of the card core's inner port. A single port is wired through.
 //
-// A request is noted and passed on a clock later, or a clock after the answer to the one before it. The ports take
-// turns: the one after the port that was served last comes first. What belongs to a request stands at its port until
-// the answer, so only the requests are kept here.
+// A request is recorded and passed on one clock later, or one clock after the answer to the request before it. The
+// ports take turns: the port after the one that was served last comes first. The other fields of a request keep their
+// values at its port until the answer, so only the requests are stored here.
 `default_nettype none
 module port_arbiter #(
     parameter int Ports = 1  // 1 to 4
@@ -49,7 +49,7 @@ module port_arbiter #(
       waiting_q <= waiting_q | 4'(request);
       if (ack) busy_q <= 1'b0;
       if ((!busy_q || ack) && waiting_q != '0) begin
-        // From the farthest port to the next one: the last that waits is taken. Ports that are not there never wait.
+        // From the farthest port to the next one: the last one that waits is chosen. Absent ports never wait.
         chosen = port_q;
         for (int n = 3; n >= 1; n--) begin
           candidate = port_q + 2'(n);

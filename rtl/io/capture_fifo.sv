@@ -1,9 +1,10 @@
-// The queue of captures: 16 of them, in the order in which their filters passed; the host reads the oldest one.
+// The queue of captures: up to 16, in the order in which their filters passed. The host reads the oldest one.
 //
-// A block RAM has 20 slots of 16 words: 16 are the queue's, and each unit has one, into which its snapshots are written
-// along with its area. When an edge has passed, the unit's slot becomes the queue's last one, and the unit gets the slot
-// that stood there: no word is copied, and the slots of ring and units are always all 20. A reset fills the ring in 16
-// clocks, in which the registers take no setting yet, so that no unit is on. A full queue keeps what it has.
+// A block RAM has 20 slots of 16 words. The queue has 16 of them; each of the four units has one, into which its
+// snapshots are written along with its area. When an edge has passed, the unit's slot becomes the last one of the
+// queue, and the unit gets the slot that was in that place. So no word is copied, and the ring and the units together
+// always have all 20 slots. A reset fills the ring in 16 clocks; in this time the registers take no setting, so no unit
+// is on. A full queue keeps its captures.
 `default_nettype none
 
 module capture_fifo (
@@ -11,23 +12,23 @@ module capture_fifo (
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] store_i,  // a word of a snapshot
-    input wire logic [3:0] passed_i,  // levels, of the units: a capture is in the unit's slot
-    input wire logic [3:0] active_i,  // the level that its edge led to
-    output logic [3:0] queued_o,  // events, combinational: it is in the queue, or lost where that is full
+    input wire logic [3:0] passed_i,  // levels, by unit: a capture is in the unit's slot
+    input wire logic [3:0] active_i,  // by unit: the level after the captured edge
+    output logic [3:0] queued_o,  // events (combinational): the capture is in the queue, or lost if that is full
     output logic full_o,
-    output logic [31:0] state_o,  // as CAPTURE_QUEUE has it
-    input wire logic [3:0] word_i,  // of the oldest capture
-    output logic [31:0] data_o  // the word two clocks later; 0 where the queue is empty
+    output logic [31:0] state_o,  // the register CAPTURE_QUEUE
+    input wire logic [3:0] word_i,  // index of a word of the oldest capture
+    output logic [31:0] data_o  // that word two clocks later; 0 if the queue is empty
 );
 
-  localparam int SLOT = 5;  // bits: 0 to 19
+  localparam int SLOT = 5;  // bits of a slot's number, 0 to 19
 
   logic        filling_q;
-  logic [ 3:0] first_q;  // places in the ring, modulo 16
-  logic [ 3:0] next_q;
+  logic [ 3:0] first_q;  // place of the oldest capture in the ring, modulo 16
+  logic [ 3:0] next_q;  // place of the next capture in the ring, modulo 16
   logic [ 4:0] count_q;  // 0 to 16
-  logic [15:0] lost_q;  // modulo 2^16
-  logic [ 1:0] unit;  // the first one that has a capture
+  logic [15:0] lost_q;  // lost captures, modulo 2^16
+  logic [ 1:0] unit;  // the first unit that has a capture
   logic        passed;
   logic        push;
   logic        drop;
@@ -43,10 +44,10 @@ module capture_fifo (
       setting_i, card_map_pkg::ADDR_CAPTURE_NEXT
   ) && count_q != '0 && data[3:0] == first_q;
 
-  logic [SLOT-1:0] slot_q[0:3];  // of the units
+  logic [SLOT-1:0] slot_q[0:3];  // slot of each unit
   logic [SLOT+2:0] ring[0:15];  // {level, unit, slot}
   logic [SLOT+2:0] oldest;
-  logic [SLOT-1:0] spare;  // at the place of the next one
+  logic [SLOT-1:0] spare;  // slot at the place of the next capture
   logic [SLOT-1:0] oldest_q;
 
   assign oldest = ring[first_q];
@@ -70,7 +71,7 @@ module capture_fifo (
       lost_q <= '0;
       for (int n = 0; n < 4; n++) slot_q[n] <= SLOT'(16 + n);
     end
-    // What is shown is of one clock.
+    // Registered, so that all fields are of one clock.
     oldest_q <= oldest[SLOT-1:0];
     state_o <= 32'(count_q) << card_map_pkg::BIT_CAPTURE_QUEUE_CAPTURES |
         32'(first_q) << card_map_pkg::BIT_CAPTURE_QUEUE_OLDEST | 32'(lost_q) << card_map_pkg::BIT_CAPTURE_QUEUE_LOST;
@@ -78,7 +79,7 @@ module capture_fifo (
     if (rst_i) state_o <= '0;
   end
 
-  // The areas of captures lie behind that of REST, 16 words each, from half of the second area on.
+  // The areas of captures follow that of REST: 16 words each, from half of the second area on.
   logic [ 9:0] stored;
   logic [ 1:0] of_unit;
   logic        store_q;
@@ -88,7 +89,7 @@ module capture_fifo (
   assign stored  = setting_bus_pkg::word(store_i);
   assign of_unit = {stored[6], stored[4]};
 
-  logic there_q;  // the queue was not empty when it was read
+  logic there_q;  // the queue was not empty when the word was read
 
   (* no_rw_check *)
   logic [31:0] memory[0:511];

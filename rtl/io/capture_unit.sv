@@ -1,14 +1,14 @@
-// A capture unit: watches one input for an edge, and asks for its snapshot at the first raw change after quiet, before the
-// input's filter knows whether it lasts.
+// A capture unit: watches one input for an edge. It requests a snapshot at the first raw change after a quiet time,
+// before the input's filter knows whether the change lasts.
 //
 // An input is quiet when it has been at its filtered level for a whole length of its filter. The first touch counts:
-// whatever the input does behind it belongs to the same edge, until the filter passes (the snapshot is then a capture) or
-// the input is quiet again (the touch was a glitch, and nothing was captured). An input without a filter is always quiet,
-// and each of its edges passes in its own clock. A capture stays until it is cleared; edges that pass meanwhile are
-// overruns. While the snapshot of an edge that has passed is on its way, no edge counts.
+// all later changes of the input belong to the same edge, until the filter passes (the snapshot is then a capture) or
+// the input is quiet again (the touch was a glitch, and nothing was captured). An input without a filter is always
+// quiet, and each of its edges passes in its own clock. A capture stays until it is cleared; edges that pass in the
+// meantime are overruns. While the snapshot of a passed edge is being written, no edge counts.
 //
-// A unit that queues its captures hands each one on as it passes. Of such a unit each edge that passes is handed on or is an
-// overrun: where the queue is full, and where the unit was not looking for the edge when it came.
+// A unit that queues its captures hands each one on as it passes. In such a unit an edge that passes is either handed
+// on or an overrun: the queue was full, or the unit was not looking for the edge when it came.
 `default_nettype none
 
 module capture_unit #(
@@ -17,16 +17,16 @@ module capture_unit #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [31:0] raw_i,  // levels of the inputs
-    input wire logic [31:0] level_i,  // behind their filters
-    input wire logic [31:0] quiet_i,  // registered
-    input wire logic select_i,  // event: the setting CAPTURE_SELECT comes in
+    input wire logic [31:0] level_i,  // levels after the filters
+    input wire logic [31:0] quiet_i,  // flags of quiet inputs, registered
+    input wire logic select_i,  // event: setting_i is a new CAPTURE_SELECT
     input wire logic [31:0] setting_i,
     input wire logic clear_i,  // event
-    input wire logic captured_i,  // event: the snapshot that was asked for is in the area
-    input wire logic queued_i,  // event: the capture that is handed on is in the queue, or lost
-    input wire logic full_i,  // it is lost
-    output logic ask_o,  // combinational: until captured_i, or until it is taken back
-    output logic passed_o,  // level: a capture is handed on, of an edge to active_edge_o
+    input wire logic captured_i,  // event: the requested snapshot is in the area
+    input wire logic queued_i,  // event: the capture handed on is in the queue, or lost
+    input wire logic full_i,  // with queued_i: the capture is lost
+    output logic ask_o,  // combinational; stays until captured_i, or until the request is withdrawn
+    output logic passed_o,  // level: a capture is handed on; its edge led to active_edge_o
     output logic active_edge_o,
     output logic pending_o,
     output logic valid_o,
@@ -35,7 +35,7 @@ module capture_unit #(
 );
   typedef enum logic [1:0] {
     OFF,
-    LOOK,    // for quiet at the level before the edge
+    LOOK,    // waits for quiet at the level before the edge
     READY,
     PENDING  // an edge has come
   } state_e;
@@ -47,21 +47,21 @@ module capture_unit #(
   logic         continuous_q;
   logic         queue_q;
   logic         old_q;  // the level before the edge
-  logic         lost_q;  // the edge has come while a capture stood
+  logic         lost_q;  // the edge came while a capture was present
   logic         confirmed_q;
   logic         taken_q;
   logic         level_q;
-  logic         watched_q;  // level_q is of the input that is watched now
+  logic         watched_q;  // level_q belongs to the input that is watched now
 
   logic         raw;
   logic         level;
   logic         quiet;
   logic         old;
-  logic         found;  // the input is quiet at a level that an edge may come from
-  logic         over;  // it was quiet again before its filter passed
+  logic         found;  // the input is quiet at a level from which a selected edge can start
+  logic         over;  // the input was quiet again before its filter passed
   logic         starts;
   logic         touch;
-  logic         missed;  // an edge passes that no touch was taken for
+  logic         missed;  // an edge passes for which no touch was taken
 
   assign raw   = raw_i[input_q];
   assign level = level_i[input_q];
@@ -75,7 +75,8 @@ module capture_unit #(
     touch = starts && raw != old;
     missed = queue_q && watched_q && state_q != OFF && level != level_q && (level ? to_active_q : to_inactive_q) &&
         !touch && !(state_q == PENDING && !confirmed_q);
-    // What is still asked for is taken back for a clock, so that the snapshot under way does not pass for the next touch's.
+    // A pending request is withdrawn for one clock, so that the snapshot under way is not taken for that of the next
+    // touch.
     if (select_i) ask_o = 1'b0;
     else if (touch) ask_o = !valid_o && (!over || taken_q || lost_q);
     else ask_o = state_q == PENDING && !over && !lost_q && !taken_q;

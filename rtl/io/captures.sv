@@ -1,4 +1,4 @@
-// The capture units, and what the registers see of them.
+// The capture units, and the state that the registers show of them.
 `default_nettype none
 
 module captures #(
@@ -76,7 +76,7 @@ module captures #(
   assign state[card_map_pkg::BIT_CAPTURE_STATE_SNAPSHOTS+:16] = snapshots_q;
   assign capture_o = capture_pkg::pack(state, active_edge, passed, ask);
 
-  logic unused;  // of absent units
+  logic unused;  // bits of absent units
   assign unused = &{1'b0, queued};
 endmodule
 

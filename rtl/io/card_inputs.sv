@@ -1,10 +1,10 @@
-// The card's inputs, from the pins to levels and roles. With the engine machine_inputs each input that has a filter's length
-// passes its filter, and roles are looked for among the levels behind it; without it there are no roles.
+// The card's inputs, from the pins to levels and roles. With the engine machine_inputs each input that has a filter
+// length goes through its filter, and the roles are found from the filtered levels. Without it there are no roles.
 `default_nettype none
 
 module card_inputs #(
     parameter int          Axes    = 4,   // 1 to 8
-    parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1,  // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          Inputs  = 4    // 1 to 32
 ) (
     input wire logic clk_i,
@@ -43,7 +43,7 @@ module card_inputs #(
     logic [Inputs-1:0] filtered;
     logic [Inputs-1:0] stands;
     logic [Inputs-1:0] quiet;
-    logic [Inputs-1:0] filters_q;  // inputs with a filter: others go past it
+    logic [Inputs-1:0] filters_q;  // inputs with a filter; the others bypass it
     logic [Inputs-1:0] levels;
 
     assign levels = filters_q & filtered | ~filters_q & raw;
@@ -51,7 +51,8 @@ module card_inputs #(
 
     assign word = setting_bus_pkg::word(setting_i);
     assign data = setting_bus_pkg::data(setting_i);
-    // The 32 filters' words, then the 64 roles', stand from 0xE00 on: word 7'h00 and 7'h20 of their range.
+    // From 0xE00 on the map has the 32 words of the filters, then the 64 words of the roles: words 7'h00 and 7'h20 of
+    // that range.
     assign set_filter = setting_i[setting_bus_pkg::SET] && word[9:5] == card_map_pkg::ADDR_INPUT_FILTER[11:7];
     assign set_role = setting_i[setting_bus_pkg::SET] && word[9:7] == card_map_pkg::ADDR_ROLE[11:9] &&
         word[6] != word[5];

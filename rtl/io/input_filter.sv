@@ -1,12 +1,12 @@
-// The digital filter of the inputs: each has a length of its own, in scans of 64 clocks.
+// The digital filter of the inputs. Each input has its own length, in scans of 64 clocks.
 //
-// A scan looks at one input every two clocks. An output changes when its input has differed from it at each clock of as
-// many whole scans as its length says: a level that lasts at most 64 * length clocks never passes, and one that lasts
-// 64 * (length + 1) always does. Between two scans of an input a flip-flop notes whether the level came back; without it
-// short pulses that a scan happens to meet would add up to a long one.
-// With Quiet, an input's flag says that it has stood at its output for as many whole scans: the same counter counts both
-// ways. It is set as the input passes, and falls in the clock after the input differs.
-// Lengths are 0 after reset. None may be set in the 64 clocks after it, while they are cleared.
+// A scan looks at one input every two clocks. An output changes when its input has differed from it in every clock of
+// as many whole scans as its length says. So a level that lasts at most 64 * length clocks never passes, and one that
+// lasts 64 * (length + 1) clocks always does. Between two scans of an input a flip-flop records whether the level came
+// back. Without it, short pulses that the scans happen to meet would add up to a long one.
+// With Quiet, a flag per input says that the input has equalled its output for as many whole scans. The same counter
+// counts both. The flag is set as the input passes, and falls one clock after the input differs.
+// Lengths are 0 after a reset. No length may be set in the 64 clocks after it, in which the lengths are cleared.
 `default_nettype none
 
 module input_filter #(
@@ -15,28 +15,28 @@ module input_filter #(
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [Inputs-1:0] levels_i,  // of this clock domain
+    input wire logic [Inputs-1:0] levels_i,  // in this clock domain
     input wire logic set_i,
     input wire logic [4:0] set_input_i,
-    input wire logic [15:0] set_length_i,  // 65,535 scans: 20 ms at up to 209 MHz
+    input wire logic [15:0] set_length_i,  // scans; 65,535 of them are at least 20 ms at up to 209 MHz
     output logic [Inputs-1:0] levels_o,
     output logic [Inputs-1:0] quiet_o
 );
-  logic [ 5:0] clocks_q;  // of the scan
-  logic [ 5:0] late_q;  // two clocks late
+  logic [ 5:0] clocks_q;  // clock within the scan
+  logic [ 5:0] late_q;  // clocks_q two clocks earlier, to match the latency of the RAMs
   logic        clearing_q;
   logic [15:0] length_read_q;
   logic [15:0] count_read_q;
-  logic [15:0] count_q;  // scans for which the input has differed, or agreed
-  logic [15:0] next_q;  // one more
-  // Compared a clock before the decision: nothing but these flags stands between the levels and it.
-  logic        none_q;  // its length is 0
-  logic        kept_lasts_q;  // the count is its length at least
-  logic        next_lasts_q;  // and with the next scan
-  logic [31:0] differs;  // now
-  logic [31:0] differed_q;  // since its last scan
+  logic [15:0] count_q;  // scans for which the input has differed from its output, or agreed with it
+  logic [15:0] next_q;  // count_q + 1
+  // Comparisons made one clock before the decision, so that only these flags lie between the levels and the decision.
+  logic        none_q;  // the length is 0
+  logic        kept_lasts_q;  // count_q has reached the length
+  logic        next_lasts_q;  // next_q has reached the length
+  logic [31:0] differs;  // inputs that differ from their outputs now
+  logic [31:0] differed_q;  // inputs that have differed in every clock since their last scan
 
-  // The content of the RAMs comes two clocks after its address.
+  // The content of the RAMs comes two clocks after the address.
   logic        decides;
   logic [ 4:0] reads;
   logic [ 4:0] scanned;
@@ -45,7 +45,7 @@ module input_filter #(
   assign reads   = clocks_q[5:1];
   assign scanned = late_q[5:1];
 
-  logic [31:0] agreed_q;  // likewise
+  logic [31:0] agreed_q;  // inputs that have agreed in every clock since their last scan
   logic [31:0] quiet_q;
   logic        steady;
   logic        lasts;
@@ -55,7 +55,7 @@ module input_filter #(
 
   always_comb begin
     differs = 32'(levels_i) ^ 32'(levels_o);
-    // It cannot overflow: an input passes, or is quiet, at the greatest length at the latest.
+    // The count cannot overflow: at the greatest length, at the latest, the input passes or is quiet.
     steady  = differs[scanned] ? differed_q[scanned] : agreed_q[scanned];
     count   = !steady ? 16'd0 : quiet_q[scanned] ? count_q : next_q;
     lasts   = decides && (clearing_q || (!steady ? none_q : quiet_q[scanned] ? kept_lasts_q : next_lasts_q));
@@ -79,7 +79,7 @@ module input_filter #(
   end
 
   if (Quiet != 0) begin : gen_quiet
-    localparam logic [31:0] PRESENT = 32'hFFFF_FFFF >> (32 - Inputs);  // no flip-flops for the others
+    localparam logic [31:0] PRESENT = 32'hFFFF_FFFF >> (32 - Inputs);  // no flip-flops for absent inputs
 
     logic [31:0] looked_at;
 

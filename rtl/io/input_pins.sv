@@ -10,7 +10,7 @@ module input_pins #(
     input wire logic [Inputs-1:0] pin_i,
     output logic [Inputs-1:0] level_o  // combinational
 );
-  // Marked, so that tools place the two side by side and know that the first one's data has no timing.
+  // The attribute makes tools place the two flip-flops side by side, and ignore the timing of the first one's data.
   (* async_reg = "true" *) logic [Inputs-1:0] first_q;
   (* async_reg = "true" *) logic [Inputs-1:0] second_q;
   logic [Inputs-1:0] inverted_q;

@@ -1,6 +1,7 @@
-// The card's outputs: set and cleared by commands. At a cut those that OUTPUT_SAFE names take their safe levels, at the cause
-// of a stop those that OUTPUT_SAFE_CAUSE names, and keep them as long as the cause is felt. The emergency stop's latch
-// gives the latter their levels at the pins without a clock; the cause that follows keeps them when the latch is cleared.
+// The card's outputs, which commands set and clear. At a cut the outputs that OUTPUT_SAFE names take their safe levels.
+// At the cause of a stop those that OUTPUT_SAFE_CAUSE names take theirs, and keep them as long as caused_i is high. The
+// emergency stop's latch sets the latter at the pins without a clock; the cause that follows keeps them when the latch
+// is cleared.
 `default_nettype none
 
 module output_pins #(
@@ -9,20 +10,20 @@ module output_pins #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
-    input wire logic caused_i,  // a cause comes, or the card is stopped or on its way to it
-    input wire logic latched_i,  // the emergency stop's latch: asynchronous
+    input wire logic caused_i,  // a cause of a stop is present, or the card is stopping or stopped
+    input wire logic latched_i,  // latch of the emergency stop (asynchronous)
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [Outputs-1:0] idle_i,  // strap: the levels in reset
     input wire logic change_i,
-    input wire logic [Outputs-1:0] set_i,  // with change_i; goes before clear_i
+    input wire logic [Outputs-1:0] set_i,  // with change_i; has priority over clear_i
     input wire logic [Outputs-1:0] clear_i,
     output logic [Outputs-1:0] pin_o  // combinational from latched_i
 );
   logic [Outputs-1:0] level_q;
   logic [Outputs-1:0] safe_q;
-  logic [Outputs-1:0] changes_q;  // those that a cut changes
+  logic [Outputs-1:0] changes_q;  // outputs that a cut changes
   logic [Outputs-1:0] cause_safe_q;
-  logic [Outputs-1:0] cause_changes_q;  // those that a cause changes, and a cut with it
+  logic [Outputs-1:0] cause_changes_q;  // outputs that a cause of a stop, and a cut with it, changes
 
   logic [31:0] data;
 

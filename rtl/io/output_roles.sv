@@ -1,5 +1,6 @@
-// Outputs that have a role follow it, whatever commands and safe levels say: at rest they stand at the strap's idle level,
-// and at the other while the role is active. The emergency stop's latch disables drives and sets brakes without a clock.
+// Outputs that have a role follow it; commands and safe levels do not change them. An inactive role gives the output
+// the strap's idle level, an active role the other level. The emergency stop's latch disables drives and sets brakes
+// without a clock.
 `default_nettype none
 
 module output_roles #(
@@ -9,19 +10,19 @@ module output_roles #(
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [Outputs-1:0] idle_i,  // strap
-    input wire logic latched_i,  // the emergency stop's latch: asynchronous
+    input wire logic latched_i,  // latch of the emergency stop (asynchronous)
     input wire logic enabled_i,
-    input wire logic released_i,  // the brake is
+    input wire logic released_i,  // the brake is released
     input wire logic pump_i,
     input wire logic healthy_i,
-    input wire logic [Outputs-1:0] level_i,  // of outputs without a role
+    input wire logic [Outputs-1:0] level_i,  // levels of outputs without a role
     output logic [Outputs-1:0] pin_o  // combinational
 );
   logic [Outputs-1:0] enable_q;
   logic [Outputs-1:0] brake_q;
   logic [Outputs-1:0] pump_q;
   logic [Outputs-1:0] healthy_q;
-  logic [Outputs-1:0] taken;  // have a role
+  logic [Outputs-1:0] taken;  // outputs that have a role
   logic [Outputs-1:0] active;
   logic [       31:0] data;
 

@@ -1,8 +1,8 @@
-// Pulse width modulation of outputs, on two channels. PWM commands set a channel's duty at their place on the path, which
-// instant_commands tells; an output of a channel has its level during a pulse, and the idle level between pulses.
+// Pulse width modulation of outputs, on two channels. PWM commands set a channel's duty at their place on the path;
+// instant_commands says when. An output of a channel has its level during a pulse, and the idle level between pulses.
 //
-// Where a duty follows the speed, nothing is on at rest: a pulse under way ends there. Between paths that follow each other
-// none is under way for some clocks; they do not count as rest.
+// If a duty follows the speed, nothing is on at rest: a pulse under way ends there. Between consecutive paths, no path
+// is under way for some clocks; these clocks do not count as rest.
 `default_nettype none
 module pwm #(
     parameter int Outputs = 4  // 1 to 16
@@ -13,8 +13,8 @@ module pwm #(
     // commands
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic take_i,  // PWM is taken now; its last halfword is on load_i
-    input wire logic apply_i,  // those taken take effect
-    input wire logic drop_i,  // or are dropped
+    input wire logic apply_i,  // the PWM commands taken before take effect
+    input wire logic drop_i,  // the PWM commands taken before are dropped
     // speed
     input wire logic [feed_pkg::WIDTH-1:0] feed_i,
     input wire logic runs_i,  // a path is under way
@@ -24,13 +24,13 @@ module pwm #(
     output logic [Outputs-1:0] pin_o  // combinational
 );
   localparam int ORDER = pwm_order_pkg::WIDTH;
-  // From the last clock with a path on that motion counts as over.
+  // Clocks after the last one with a path until motion counts as over.
   localparam logic [6:0] GAP = 7'd127;
 
   logic [     2*27-1:0] periods_q;
-  logic [2*Outputs-1:0] outputs_q;  // channel 1, channel 0
+  logic [2*Outputs-1:0] outputs_q;  // outputs of channel 1, outputs of channel 0
   logic [         31:0] data;
-  logic [          1:0] sets;  // the period, by channel
+  logic [          1:0] sets;  // events, by channel: the period is set
   logic [          1:0] stop;
 
   assign data = setting_bus_pkg::data(setting_i);
@@ -51,7 +51,7 @@ module pwm #(
     end
   end
 
-  // Commands: one of each channel may wait.
+  // Commands: one per channel can wait.
   logic [       47:0] words_q;
   logic               merge_q;
   logic [        1:0] waits_q;
@@ -74,7 +74,7 @@ module pwm #(
   end
 
   // Speed.
-  logic [6:0] gap_q;  // clocks that motion still counts
+  logic [6:0] gap_q;  // clocks for which motion still counts
   logic moves;
   logic still;
 
@@ -121,7 +121,7 @@ module pwm #(
     );
   end
 
-  // Outputs of channels, those with a pulse now, and those between pulses.
+  // Outputs of a channel: all, those with a pulse now, those between pulses.
   logic [Outputs-1:0] carry;
   logic [Outputs-1:0] high;
   logic [Outputs-1:0] low;
@@ -133,7 +133,7 @@ module pwm #(
   assign low   = carry & ~high;
   assign pin_o = (level_i & ~low) | (idle_i & low);
 
-  logic unused;  // what concerns others
+  logic unused;  // bits for other blocks
   assign unused = &{1'b0, data, setting_i, load_i, feed_i};
 endmodule
 `default_nettype wire

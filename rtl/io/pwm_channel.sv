@@ -1,21 +1,21 @@
-// A PWM channel's period and pulse: a pulse begins with its period and lasts for the on-time that came last.
+// A PWM channel's period and pulse: a pulse begins with its period and lasts for the on-time that arrived last.
 //
-// A channel that begins anew has its first period after 512 clocks, in which an on-time comes.
+// After a stop, the first period begins 512 clocks later; an on-time arrives in the meantime.
 `default_nettype none
 module pwm_channel (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic stop_i,  // it stands, and begins anew in the clock after
+    input wire logic stop_i,  // the channel is stopped, and restarts in the clock after
     input wire logic [26:0] period_i,  // clocks
-    input wire logic done_i,  // event: an on-time comes
+    input wire logic done_i,  // event: on_i is a new on-time
     input wire logic [26:0] on_i,  // clocks, at most the period
-    output logic due_o,  // the period ends within 511 clocks: an on-time is wanted
+    output logic due_o,  // the period ends within 511 clocks: requests an on-time
     output logic pulse_o
 );
   localparam logic [26:0] TO_FIRST = 27'd512;
 
-  logic [26:0] left_q;  // clocks of the period
-  logic [26:0] on_q;  // clocks of the pulse, while there is one
+  logic [26:0] left_q;  // clocks left of the period
+  logic [26:0] on_q;  // clocks left of the pulse, while there is one
   logic [26:0] next_q;  // the on-time of the next period
   logic        last;
 

@@ -1,8 +1,9 @@
-// The on-times of both PWM channels, in turns of 128 clocks each: three products by one adder, a bit of the second factor per
-// clock. A product of A and B is (A B + 2^16) / 2^17, rounded down: dropping a bit in each of 17 additions rounds down as
-// one division would, and the sum begins with the half. That of the speed begins with 0, and so stays below 2^31.
+// The on-times of both PWM channels, which take turns of 128 clocks. One adder makes three products, one bit of the
+// second factor per clock. A product of A and B is (A B + 2^16) / 2^17, rounded down: dropping one bit in each of 17
+// additions rounds down as one division would, and the sum starts with the half. The sum for the speed starts with 0
+// and so stays below 2^31.
 //
-//   clock 0        the speed is taken, where the channel wants an on-time
+//   clock 0        the speed is sampled, if the channel requests an on-time
 //   1 to 17        rate * ratio
 //   18 to 48       shifted up, at most to 2^31 - 1
 //   50 to 66       * gain, cut to the duty
@@ -12,12 +13,12 @@
 module pwm_duty (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [1:0] due_i,  // by channel: an on-time is wanted
-    input wire logic [1:0] cancel_i,  // by channel: what it was worked out from has changed
+    input wire logic [1:0] due_i,  // by channel: requests an on-time
+    input wire logic [1:0] cancel_i,  // by channel: the inputs of its on-time have changed
     input wire logic [2*pwm_order_pkg::WIDTH-1:0] orders_i,
     input wire logic [2*27-1:0] periods_i,
-    input wire logic [31:0] rate_i,  // 2^-32 feed ticks per enabled clock
-    input wire logic [16:0] ratio_i,  // 2^-16
+    input wire logic [31:0] rate_i,  // feed ticks per enabled clock, in units of 2^-32
+    input wire logic [16:0] ratio_i,  // enabled clocks per clock, in units of 2^-16
     output logic [1:0] done_o,  // events, by channel (combinational)
     output logic [26:0] on_o  // with done_o
 );
@@ -31,7 +32,7 @@ module pwm_duty (
   logic [                    16:0] b_q;
   logic [                    31:0] sum_q;
   logic [                    32:0] sum;
-  logic [                     4:0] shift_q;  // still to come
+  logic [                     4:0] shift_q;  // shifts still to make
   logic [pwm_order_pkg::WIDTH-1:0] order;
   logic [                    26:0] period;
   logic [                    16:0] followed;
@@ -60,7 +61,7 @@ module pwm_duty (
         {a_q, b_q, sum_q} <= {rate_i, ratio_i, 32'd0};
       end
       7'd49: {a_q, b_q, sum_q} <= {sum_q, 1'b0, pwm_order_pkg::gain(order), HALF};
-      // A duty of 65535 is full: the upper half of the duties is a 65536th more.
+      // A duty of 65535 means full: each duty from 32768 on counts as 1/65536 more.
       7'd67: {a_q, b_q, sum_q} <= {4'd0, period, 1'b0, {1'b0, duty} + 17'(duty[15]), HALF};
       default:
       if (turn >= 7'd18 && turn <= 7'd48) begin
@@ -75,7 +76,7 @@ module pwm_duty (
     if (rst_i) {phase_q, busy_q} <= '0;
   end
 
-  logic unused;  // the bits that are dropped
+  logic unused;  // the dropped bits
   assign unused = &{1'b0, sum[0]};
 
   assign done_o = 2'(busy_q && turn == 7'd85) << channel;

@@ -1,7 +1,7 @@
-// The roles of the inputs: a role is active while one of the inputs that its mask names is.
+// The roles of the inputs: a role is active while any of the inputs that its mask names is active.
 //
-// A scan of 64 clocks looks at a role every clock, so a level that lasts 64 clocks is seen, within 65 clocks of its
-// beginning. Masks are 0 after reset. None may be set in the 64 clocks after it, while they are cleared.
+// A scan of 64 clocks looks at one role per clock. So a level that lasts 64 clocks is seen, within 65 clocks of its
+// beginning. Masks are 0 after a reset. No mask may be set in the 64 clocks after it, in which the masks are cleared.
 `default_nettype none
 
 module role_scan #(
@@ -10,13 +10,13 @@ module role_scan #(
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [Inputs-1:0] levels_i,  // filtered
+    input wire logic [Inputs-1:0] levels_i,  // levels after the filters
     input wire logic set_i,
     input wire logic [5:0] set_role_i,  // 8 * kind + axis
     input wire logic [Inputs-1:0] set_mask_i,
     output logic [input_roles_pkg::WIDTH-1:0] roles_o
 );
-  // Kinds of which each axis has one, and the card's own roles.
+  // Kinds of roles that each axis has, and the roles of the card itself.
   localparam logic [2:0] LimitMinus = 3'd0;
   localparam logic [2:0] LimitPlus = 3'd1;
   localparam logic [2:0] DriveFault = 3'd4;
@@ -32,7 +32,7 @@ module role_scan #(
   logic [       5:0] scanned;
   logic              active;
 
-  // The content of the RAM comes two clocks after its address.
+  // The content of the RAM comes two clocks after the address.
   assign scanned = reads_q - 6'd2;
   assign active  = |(levels_i & mask_q) && !clearing_q;
 
@@ -57,7 +57,7 @@ module role_scan #(
 
   logic [Inputs-1:0] masks[0:63];
 
-  // One write port and one read port, with a register behind it.
+  // One write port, and one read port with a register behind it.
   always_ff @(posedge clk_i) begin
     if (set_i || clearing_q) masks[clearing_q?scanned : set_role_i] <= clearing_q ? '0 : set_mask_i;
     mask_read_q <= masks[reads_q];

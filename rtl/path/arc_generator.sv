@@ -1,8 +1,10 @@
-// Arc generator: a circle as chords whose increments it computes and loads into the plane's two axes, so that their own
-// pulse generators make the steps. Half chords of y and x come in turns: y's starts at half, x's at whole chord times.
+// Arc generator: makes a circle from chords. It computes their increments and loads them into the plane's two axes,
+// whose own pulse generators make the steps. Half chords of y and x alternate: y's start at half chord times, x's at
+// whole chord times.
 //
-// Each axis's shadow holds one chord ahead: the next half chord of an axis begins as soon as its shadow is free, has the
-// time of two half chords, and needs 13 clocks at most; so from the first chord on path ticks may come in every clock.
+// Each axis's shadow holds one chord ahead. The next half chord of an axis begins as soon as its shadow is free. It has
+// the time of two half chords and needs 13 clocks at most, so from the first chord on path ticks may come in every
+// clock.
 `default_nettype none
 
 module arc_generator #(
@@ -11,12 +13,12 @@ module arc_generator #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic clear_i,  // the arc is over, or cut
-    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,  // its targets only while loadable_o
-    input wire logic start_i,  // the state is loaded; the axes swap three clocks later
-    input wire logic tick_i,  // path tick: at most one from the start until ready_o
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,  // this unit's targets only while loadable_o
+    input wire logic start_i,  // event: the state is loaded; the axes swap three clocks later
+    input wire logic tick_i,  // path tick: at most one between start_i and ready_o
     output logic [15:0] chord_word_o,
-    output logic [Axes-1:0] chord_load_o,  // a halfword of the axis's next increment
-    output logic [Axes-1:0] chord_swap_o,  // the axis takes it; a clock after the chord's last path tick
+    output logic [Axes-1:0] chord_load_o,  // by axis: shifts a halfword of the next increment in
+    output logic [Axes-1:0] chord_swap_o,  // by axis: the next chord begins, a clock after the old one's last path tick
     output logic ready_o,  // path ticks may come
     output logic loadable_o
 );
@@ -43,11 +45,11 @@ module arc_generator #(
     end
   end
 
-  logic in_x_q;  // which coordinate moves, or waits to
+  logic in_x_q;  // 1: x moves, or waits to move; 0: y
   logic full_x_q;  // the axis's shadow holds an increment that is not yet swapped in
   logic full_y_q;
   logic ticked_q;
-  logic begun_q;  // the first chord of both is swapped in
+  logic begun_q;  // the first chords of both axes are swapped in
   logic begin_half;
   logic busy;
   logic last;
@@ -60,7 +62,8 @@ module arc_generator #(
   logic swap_y;
 
   assign begin_half = start_i | (~loadable_o & (~busy | last) & ~(in_x_q ^ last ? full_x_q : full_y_q));
-  // y's first chord is loaded before x's. The one tick that may come before them ends no half.
+  // The first chord of y is loaded before that of x. The one tick that may come before both are loaded ends no half
+  // chord.
   assign begin_arc = full_x_q & (ticked_q | tick_i) & ~begun_q;
   assign swap_x = begin_arc | (tick_i & even);
   assign swap_y = begin_arc | (tick_i & odd);
@@ -107,7 +110,7 @@ module arc_generator #(
       loadable_o <= 1'b0;
       ready_o <= 1'b0;
     end
-    // full_y_q is looked at after y's first chord only.
+    // full_y_q needs no reset: it is used only after y's first chord.
     if (rst_i | clear_i) begin
       in_x_q   <= 1'b0;
       ticked_q <= 1'b0;

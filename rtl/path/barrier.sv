@@ -1,7 +1,8 @@
-// DWELL, END, WAIT_INPUT and PROBE_END: waits until both queues stand at the barrier, counts clocks or waits for what
-// ends it, then lets both go on. Where one queue stands and the other still has ticks to give or take, the program is wrong.
+// DWELL, END, WAIT_INPUT and PROBE_END: waits until both queues are at the barrier, counts clocks or waits for the end
+// condition, then lets both continue. If one queue is at a barrier and the other still has ticks to give or take, the
+// program is wrong.
 //
-// The path's tick counter, free at a barrier, counts the clocks. A dwell of n clocks counts for max(1, n).
+// The path's tick counter is free at a barrier and counts the clocks. A dwell of n clocks counts as max(1, n).
 `default_nettype none
 
 module barrier (
@@ -14,20 +15,20 @@ module barrier (
     input  wire logic feed_runs_i,
     input  wire logic zero_i,           // the count is 0
     input  wire logic end_i,            // the barrier is an END
-    input  wire logic wait_i,           // a WAIT_INPUT: the count is a time-out, 0 none
-    input  wire logic met_i,            // its input has come
-    input  wire logic stays_i,          // a PROBE_END that must wait
-    input  wire logic drop_i,           // commands are dropped: what stands where says nothing
-    input  wire logic last_i,           // of the tick counter
+    input  wire logic wait_i,           // the barrier is a WAIT_INPUT: the count is a time-out, 0 none
+    input  wire logic met_i,            // the condition of the WAIT_INPUT is met
+    input  wire logic stays_i,          // the barrier is a PROBE_END that must wait
+    input  wire logic drop_i,           // commands are dropped: a queue alone at a barrier is no mismatch
+    input  wire logic last_i,           // last_o of the tick counter
     input  wire logic begin_i,          // a path or a direct move began in the clock before
     output logic      mismatch_o,       // event
-    output logic      load_o,           // the barrier begins: load the tick counter
-    output logic      counting_o,       // one count each clock
-    output logic      done_o,           // both queues go on
+    output logic      load_o,           // event: the barrier begins; loads the tick counter
+    output logic      counting_o,       // the tick counter counts once per clock
+    output logic      done_o,           // event: both queues continue
     output logic      ended_o           // the last command was an END (combinational)
 );
-  // SETTLE waits for the last tick in the path domain; LEAVE gives the two fetches the clock in which they take back
-  // geometry_at_i and feed_at_i.
+  // SETTLE waits for the last tick to pass the path domain. LEAVE gives the two fetches the clock in which they take
+  // back geometry_at_i and feed_at_i.
   typedef enum logic [2:0] {
     IDLE,
     SETTLE,
@@ -49,7 +50,7 @@ module barrier (
   always_ff @(posedge clk_i) begin : p_barrier
     state_e state_d;
 
-    // Both queues stand at a barrier until it is done, or cut; between barriers nothing moves.
+    // Both queues stay at a barrier until it is done or cut. Between barriers the state does not change.
     if (together || rst_i) begin
       state_d = state_q;
       case (state_q)
@@ -69,7 +70,7 @@ module barrier (
     end
   end
 
-  // That something begins comes late: it is asked a clock after, when it is known.
+  // The begin of a motion is reported one clock late, so ended_o also excludes the clock of begin_i.
   logic ended_q;
   assign ended_o = ended_q && !begin_i;
 

@@ -1,4 +1,4 @@
-// How many commands of a queue have begun since the last cut, with its word of the snapshot.
+// Counts the commands of a queue that have begun since the last cut. It also has their word of the snapshot.
 `default_nettype none
 
 module begun_counter (

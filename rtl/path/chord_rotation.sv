@@ -1,11 +1,13 @@
-// The rotation of an arc in chords, 16 bits a clock: moves one coordinate by the other one / 2^k, rounded, and gives what
-// it moves by and the closing increment, together the increment of its axis.
+// The rotation of an arc in chords, 16 bits per clock: moves one coordinate by the other one / 2^k, rounded. The
+// movement plus the closing increment is the increment of the coordinate's axis.
 //
-// Source and target change places in every half chord: the source's words go where the target was, the moved target's
-// where the source was, so the next half chord finds its own source in the same place and no coordinate is chosen.
+// Source and target exchange places in every half chord: the source's words go where the target was, the moved target's
+// words where the source was. So the next half chord finds its own source in the same place, and no coordinate is
+// selected.
 //
-// A half chord: four clocks in which the source passes the funnel shifter and comes round again, a fifth where k >= 16
-// (then the funnel wants a word more), four in which the words are added. Loads only at rest, all chains before a start.
+// A half chord has four clocks in which the source passes the funnel shifter and circulates, a fifth clock if k
+// >= 16 (the funnel then needs one more word), and four clocks in which the words are added. Loads come only at rest;
+// all chains are loaded before a start.
 `default_nettype none
 
 module chord_rotation (
@@ -14,15 +16,15 @@ module chord_rotation (
     input wire logic clear_i,
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic [4:0] k_i,
-    input wire logic minus_i,  // the coordinate moves against the other one's sign; stands still
+    input wire logic minus_i,  // the coordinate moves against the other one's sign; constant in a half chord
     input wire logic begin_i,  // at rest or with last_o: the next clock is a half chord's first
     output logic busy_o,
-    output logic last_o,  // its last clock
+    output logic last_o,  // last clock of the half chord
     output logic loading_o,  // the next clock has a halfword of the increment
-    output logic first_o,  // that is the first of three
+    output logic first_o,  // that halfword is the first of three
     output logic [15:0] word_o
 );
-  // Clocks of a half chord, one bit each.
+  // Clocks of a half chord, one-hot.
   logic [3:0] pass_q;
   logic       gap_q;
   logic [3:0] add_q;
@@ -56,16 +58,16 @@ module chord_rotation (
   assign load_closing = load_bus_pkg::to(load_i, load_target_pkg::CHORD_CLOSING);
   assign loaded = load_bus_pkg::word(load_i);
 
-  // Funnel: two words of the source, and the bit below them, which rounds. Subtracting is adding the complement, and its
-  // one that is to be added is the complement of the bit that rounds: both come by complementing the source. Behind
-  // the last word its sign goes on.
-  logic [63:0] source_q;  // X and Y in turns
+  // Funnel: two words of the source, and the bit below them, which rounds. A subtraction adds the complement plus one,
+  // and this one is the complement of the rounding bit: complementing the source provides both. After the last word its
+  // sign is extended.
+  logic [63:0] source_q;  // X and Y alternate
   logic [15:0] word_q;
   logic [15:0] before_q;
   logic        below_q;
-  logic [19:0] coarse_q;  // by multiples of 4; the lowest bit rounds
+  logic [19:0] coarse_q;  // shifted by multiples of 4; the lowest bit rounds
   logic [16:0] fine;
-  logic [15:0] moved_q;  // zero but while words are added, so that a load passes the adder unchanged
+  logic [15:0] moved_q;  // zero except while words are added, so that a load passes the adder unchanged
 
   assign fine = 17'(coarse_q >> k_i[1:0]);
 
@@ -78,8 +80,8 @@ module chord_rotation (
     else moved_q <= '0;
   end
 
-  // The target's words, least significant first, and the closing increment's: y's and x's in turns, y's first, though x's
-  // is loaded first.
+  // The words of the target, least significant first, and of the closing increments: y's and x's alternate, y's first,
+  // though x's is loaded first.
   logic [63:0] target_q;
   logic [95:0] closing_q;
   logic [16:0] sum;

@@ -1,17 +1,19 @@
-// Deviation accumulator: a conic or a line, one step a path tick. In 4 directions a unit step from the sign of the
-// deviation F; in 8 (the path's bit of PLANE) a step along x, y or both, what leaves the least deviation.
+// Deviation accumulator: makes a conic or a line, one step per path tick. In 4 directions it makes a unit step, chosen
+// by the sign of the deviation F. In 8 directions (the path's bit of PLANE) it steps along x, y or both, whichever
+// leaves the least deviation.
 //
-// A step of s in x does F += s*GX + CX/2 and GX += s*CX, in y likewise, word by word (deviation_steps). In 8 directions a
-// second pass, in which all words come round unchanged, compares what may come next (deviation_compare).
+// A step of s in x does F += s*GX + CX/2 and GX += s*CX; a step in y does the same with GY and CY; all word by word
+// (deviation_steps). In 8 directions a second pass, in which all words circulate unchanged, compares the candidates
+// for the next step (deviation_compare).
 //
-// Timing: a tick at c gives its step at c+2 and ready_o again at c+9; start_i at c gives ready_o at c+2. In 8 directions
-// ready_o comes 8 clocks later each time.
-// A load halfword makes the block unready until the next start_i: two clocks after END_X, END_Y, QUADRANTS, else one.
+// Timing: a tick at c gives its step at c+2 and ready_o again at c+9; start_i at c gives ready_o at c+2. In 8
+// directions ready_o comes 8 clocks later each time. A loaded halfword makes the block unready until the next start_i,
+// which comes at the earliest two clocks after END_X, END_Y and QUADRANTS, and one clock after the others.
 // load_i and start_i are given only at rest; all nine chains are loaded before a start.
 `default_nettype none
 
 module deviation_accumulator #(
-    parameter int EightDirections = 0  // 1: paths in 8 directions too
+    parameter int EightDirections = 0  // 1: with paths in 8 directions
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -24,18 +26,18 @@ module deviation_accumulator #(
     output logic step_y_o,
     output logic dir_y_o,
     output logic ready_o,
-    output logic stepping_o,  // not in the last four clocks before ready_o (combinational)
+    output logic stepping_o,  // a step is under way, except in the last four clocks before ready_o (combinational)
     output logic at_end_o
 );
-  // Words that travel: 5 words of G enter the adders in phases 0..4 and come back three clocks later, in 3..7.
+  // Words in transit: 5 words of G enter the adders in phases 0..4 and come back three clocks later, in 3..7.
   localparam int LAST = 7;
 
   logic [79:0] f_q, gx_q, gy_q;
   logic [47:0] hx_q, hy_q;  // CX/2, CY/2
-  logic [31:0] ex_q, ey_q;  // displacement that remains
+  logic [31:0] ex_q, ey_q;  // remaining displacement
   logic [15:0] quadrants_q;
   logic        clockwise_q;
-  logic        eight_q;  // this path's step rule
+  logic        eight_q;  // this path's step rule: 8 directions
 
   // Chains by their target on the load bus.
   localparam int F = 32'(load_target_pkg::DEVIATION[3:0]);
@@ -48,7 +50,7 @@ module deviation_accumulator #(
   localparam int QUADRANTS = 32'(load_target_pkg::QUADRANTS[3:0]);
   localparam int PLANE = 32'(load_target_pkg::PLANE[3:0]);
 
-  // The chains take a halfword a clock late: the choice among so many is in no long path.
+  // The chains take a halfword one clock late, so that the selection among so many chains is in no long path.
   logic [15:0] word;
   logic [ 8:0] load;
   logic        loading;
@@ -60,7 +62,7 @@ module deviation_accumulator #(
     for (int i = 0; i < 9; i++) load[i] <= load_bus_pkg::to(load_i, load_target_pkg::DEVIATION + 9'(i));
   end
 
-  // Control: one-hot phase of a step and of the pass that compares, and enables registered a clock ahead.
+  // Control: one-hot phases of a step and of the comparing pass, and enables registered one clock ahead.
   logic [LAST:0] phase_q;
   logic [LAST:0] compare_q;
   logic run_q, start_q, turn_q, g_shift_q, f_shift_q, f_turn_q, h_shift_q, e_shift_q;
@@ -99,10 +101,10 @@ module deviation_accumulator #(
     end
   end
 
-  // Choice of the next step, and what it makes of the words at the chains' ends. Pairs are {y, x}.
+  // Choice of the next step, and the words that come back to the chains' ends. Pairs are {y, x}.
   logic x_zero_q, y_zero_q, done_q, finish, finish_q;
   logic [1:0] take, negative, old_sign, sides;
-  logic [ 1:0] came;  // the step's last word of this axis's gradient, with its sign
+  logic [ 1:0] came;  // the last word of the axis's gradient comes back from the step, with its sign
   logic [15:0] f_back;
   logic [31:0] g_back, e_back, halves;
   assign halves = {hy_q[15:0], hx_q[15:0]} & {32{h_shift_q}};
@@ -154,7 +156,7 @@ module deviation_accumulator #(
       .sides_o(sides)
   );
 
-  // State: shift chains; a chain that travels is full again when its last word is back.
+  // State: shift chains. A chain that rotates is complete again when its last word is back.
   always_ff @(posedge clk_i) begin
     if (loading_q | run_q) begin
       if (load[F] | f_shift_q) f_q <= {load[F] ? word : f_turn_q ? f_q[15:0] : f_back, f_q[79:16]};
@@ -177,15 +179,16 @@ module deviation_accumulator #(
     assign eight_q = 1'b0;
   end
 
-  // Quadrants: the last one is foreseen, so that at_end_o and the next choice know of it with the sign itself. With
-  // the upper bits 0 the change takes the last one: at 0 done_q is set already, and the count no longer matters.
+  // Quadrants: the last change is predicted, so that at_end_o and the next choice know of it together with the sign
+  // itself. If the upper bits are 0, the change uses up the last quadrant; at 0 done_q is set already, and the count no
+  // longer matters.
   logic upper_zero_q, change, done;
   assign change = |(came & ({g_back[31], g_back[15]} ^ old_sign));
   assign done   = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
     if (load[QUADRANTS]) quadrants_q <= word;
     else if (change) quadrants_q <= quadrants_q - 16'd1;
-    // The flags of what a start finds, and of what a step leaves.
+    // Flags of the state at a start, and after a step.
     if (start_i | run_q) begin
       upper_zero_q <= quadrants_q[15:1] == 15'd0;
       x_zero_q <= ex_q == 32'd0;

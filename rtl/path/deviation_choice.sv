@@ -1,31 +1,33 @@
-// Which way the deviation accumulator steps next, renewed at rest and held while the step is made. Pairs are {y, x}.
+// The direction of the deviation accumulator's next step: updated at rest, constant while the step is made. Pairs are
+// {y, x}.
 //
-// One axis moves inward, towards its zero, the other outward. In 4 directions the one steps on and outside the curve, the
-// other inside it. In 8 the inward axis rests where F lies nearer to 0 after the outward step alone, the outward one
-// where it does after the inward step alone: F with both lies between, so signs of sums say it (deviation_compare).
-// Outside the curve and where its gradient is the larger the outward axis never steps alone (docs/decisions/0003).
+// One axis moves inward, towards its zero, the other outward. In 4 directions the inward axis steps if the point is on
+// or outside the curve, otherwise the outward axis. In 8 directions both step, unless F is nearer to 0 after one step
+// alone: then the other axis rests. F after both steps lies between the other two, so signs of sums decide
+// (deviation_compare). If F >= 0 and the outward axis has the larger gradient, the outward axis never steps alone
+// (docs/decisions/0003).
 `default_nettype none
 
 module deviation_choice #(
-    parameter int EightDirections = 0  // 1: built in
+    parameter int EightDirections = 0  // 1: with 8 directions
 ) (
     input wire logic clk_i,
-    input wire logic rest_i,  // all inputs are of the present point
-    input wire logic eight_i,  // the path's step rule
+    input wire logic rest_i,  // all inputs belong to the present point
+    input wire logic eight_i,  // the path's step rule: 8 directions
     input wire logic clockwise_i,
     input wire logic inside_i,  // F is negative
     input wire logic [1:0] gradient_i,  // signs of GX and GY
-    input wire logic compare_i,  // both axes are tried next: which way, these say:
-    input wire logic [1:0] next_i,  // signs of GX and GY as the step leaves them
-    input wire logic [1:0] sides_i,  // the sum of F with the axis's step and with both is negative
+    input wire logic compare_i,  // both axes are tried next; next_i says in which directions
+    input wire logic [1:0] next_i,  // signs of GX and GY after the step
+    input wire logic [1:0] sides_i,  // F after this axis's step, plus F after both steps, is negative
     input wire logic last_i,  // no quadrants left
-    input wire logic [1:0] left_i,  // signs of the displacements that are left
-    input wire logic [1:0] arrived_i,  // there is none left
+    input wire logic [1:0] left_i,  // signs of the remaining displacements
+    input wire logic [1:0] arrived_i,  // the remaining displacement is 0
     input wire logic finishing_i,
-    output logic finish_o,  // straight to the end (combinational, at rest)
+    output logic finish_o,  // steps straight to the end (combinational, at rest)
     output logic [1:0] take_o,
-    output logic [1:0] negative_o,  // in 4 directions alone: both of the axis that steps
-    output logic [1:0] old_sign_o  // of the gradients before the step
+    output logic [1:0] negative_o,  // 1: negative; in 4 directions both bits are those of the axis that steps
+    output logic [1:0] old_sign_o  // signs of the gradients before the step
 );
   logic [1:0] ahead, reached, tabled, least, choice;
   logic inward_x;

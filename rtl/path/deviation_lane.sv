@@ -1,19 +1,20 @@
-// Arithmetic of a step along one axis, a word of 16 bits a clock, lowest first.
+// Arithmetic of a step along one axis, one word of 16 bits per clock, lowest first.
 //
-// With U = s*G + CX/2 a step of s adds U to F and makes G + s*CX = s*(U + CX/2) of G; a negative s is an inversion on the
-// way in and on the way out, and its missing one enters as the carry into F. Words that enter in phases 0..4 are U's in
-// phases 2..6 and come back in phases 3..7, the two of the displacement in 2 and 3.
+// With U = s*G + CX/2, a step of s adds U to F and replaces G by G + s*CX = s*(U + CX/2). For a negative s the words
+// are inverted on the way in and on the way out; the missing one enters as the carry into F. Words that enter in phases
+// 0..4 are words of U in phases 2..6 and come back in phases 3..7; the two words of the displacement come back in 2 and
+// 3.
 `default_nettype none
 
 module deviation_lane (
     input  wire logic        clk_i,
-    input  wire logic        run_i,       // words move; what they held before phase 0 never counts
+    input  wire logic        run_i,       // words move; their content before phase 0 is ignored
     input  wire logic [ 1:0] phase_i,     // phases 1 and 0
-    input  wire logic        skip_i,      // U is 0; nothing that comes back is taken
+    input  wire logic        skip_i,      // U is 0; words that come back are ignored
     input  wire logic        negative_i,
     input  wire logic [15:0] gradient_i,
     input  wire logic [15:0] half_i,      // CX/2: 3 words, then zeros
-    input  wire logic [15:0] left_i,      // displacement that remains
+    input  wire logic [15:0] left_i,      // remaining displacement
     output logic      [15:0] change_o,    // U
     output logic      [15:0] gradient_o,
     output logic      [15:0] left_o

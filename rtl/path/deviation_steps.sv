@@ -1,15 +1,16 @@
-// The deviation accumulator's adders: words of F, gradients, half second differences and displacements in, what a step
-// makes of them out. In 4 directions one lane serves both axes; where 8 are built in, y has its own. Pairs are {y, x},
-// their words too. Phases: those of the lanes; F comes back in phases 3..7, after both steps in 4..8.
+// The deviation accumulator's adders: words of F, gradients, half second differences and displacements come in, their
+// values after a step go out. In 4 directions one lane serves both axes; if 8 directions are built in, y has its own
+// lane. Pairs are {y, x}, also pairs of words. The phases are those of the lanes; F comes back in phases 3..7, after
+// both steps in 4..8.
 `default_nettype none
 
 module deviation_steps #(
-    parameter int EightDirections = 0  // 1: built in
+    parameter int EightDirections = 0  // 1: with 8 directions
 ) (
     input wire logic clk_i,
     input wire logic run_i,
     input wire logic [2:0] phase_i,
-    input wire logic eight_i,  // the path's step rule
+    input wire logic eight_i,  // the path's step rule: 8 directions
     input wire logic [1:0] take_i,
     input wire logic [1:0] negative_i,
     input wire logic [15:0] f_i,
@@ -19,9 +20,9 @@ module deviation_steps #(
     output logic [15:0] f_o,
     output logic [31:0] gradient_o,
     output logic [31:0] left_o,
-    output logic [1:0] sides_o  // deviation_compare's
+    output logic [1:0] sides_o  // from deviation_compare
 );
-  // The first lane has x, and y in its place where y steps in 4 directions.
+  // The first lane has x, or y if y steps in 4 directions.
   logic [15:0] change, after_first, deviation, gradient_x, gradient_y, left_x, left_y;
   logic on_x, negative, skip, carry_q;
   logic [16:0] after_sum;

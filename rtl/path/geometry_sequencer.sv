@@ -1,9 +1,9 @@
-// The geometry side of the card: decodes one command ahead, runs paths, meets the feed at barriers.
+// The geometry side of the card: decodes one command ahead, runs paths, and meets the feed at barriers.
 `default_nettype none
 
 module geometry_sequencer #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -18,7 +18,7 @@ module geometry_sequencer #(
     input wire logic [Axes-1:0] direct_mask_i,
     // feed, engines and axes
     input wire logic [feed_pkg::WIDTH-1:0] feed_i,
-    input wire logic take_i,  // the tick is taken in this clock (combinational)
+    input wire logic take_i,  // a tick is taken in this clock (combinational)
     input wire logic [engines_pkg::WIDTH-1:0] engines_i,
     output logic [load_bus_pkg::WIDTH-1:0] load_o,
     output logic [move_pkg::WIDTH-1:0] move_o,
@@ -30,8 +30,8 @@ module geometry_sequencer #(
     // commands that are neither paths nor barriers, and the probe
     output logic [commands_pkg::WIDTH-1:0] commands_o,
     input wire logic [probe_pkg::WIDTH-1:0] probe_i,
-    input wire logic drop_i,  // commands up to PROBE_END are not carried out
-    input wire logic halt_i,  // event: what runs ends here
+    input wire logic drop_i,  // commands up to PROBE_END are dropped
+    input wire logic halt_i,  // event: the path under way ends here
     // status
     output logic idle_o,
     output logic [geometry_state_pkg::WIDTH-1:0] geometry_state_o,
@@ -41,7 +41,7 @@ module geometry_sequencer #(
   // the decoded command
   logic [Axes-1:0] mask;
   logic [4:0] engine;
-  logic is_barrier;  // or one of the next four
+  logic is_barrier;  // the command is not a path: a barrier, or one of the next four
   logic is_output;
   logic is_mark;
   logic is_pwm;
@@ -220,7 +220,7 @@ module geometry_sequencer #(
     assign unused = &{1'b0, setting_i, arrival_i, rest_i, count, period_ends, goes_on};
   end
 
-  // A barrier that has begun is over where the others are dropped.
+  // A halt ends a barrier that has begun, because it drops the commands; PROBE_END stays.
   barrier both_queues (
       .clk_i,
       .rst_i,
@@ -244,7 +244,8 @@ module geometry_sequencer #(
       .ended_o(geometry_state_o[geometry_state_pkg::ENDED])
   );
 
-  // A direct move does not count, nor what is neither path nor barrier. A barrier that had begun has counted.
+  // A direct move does not count, nor does a command that is neither path nor barrier. A barrier that has begun is
+  // counted.
   logic drop_counts;
   assign drop_counts = dropped && !instant && !barrier_counts && !barrier_done;
 
@@ -258,10 +259,10 @@ module geometry_sequencer #(
       .begun_o(geometry_state_o[geometry_state_pkg::GEOMETRY_BEGUN+:32])
   );
 
-  // A barrier is over before its command is.
+  // A barrier ends before its command does, so decoder_idle covers it.
   always_ff @(posedge clk_i) idle_o <= (decoder_idle && empty_i && !path_active) || rst_i;
 
-  logic unused_bundles;  // what concerns others
+  logic unused_bundles;  // fields for other blocks
   assign unused_bundles = &{1'b0, feed_i, engines_i, probe_i};
 endmodule
 

@@ -1,8 +1,8 @@
-// What commands do at their place on the path beside motion: OUTPUT and MARK, and when PWM takes effect.
+// The effects that commands have at their place on the path besides motion: OUTPUT and MARK, and when PWM takes effect.
 //
-// They wait for the end of the path that runs as they are decoded, and then for as long as its last tick takes to the
-// axes' steps; where none runs for that long alone. Nothing is decoded between a path's end and its effect, since a
-// command takes 8 clocks: one set of masks is enough.
+// The commands wait for the end of the path that runs as they are decoded, and then for the time that its last tick
+// takes to the axes' steps. If no path runs, they wait for that time only. No command is decoded between a path's end
+// and its effect, since a command takes 8 clocks; so one set of masks is enough.
 `default_nettype none
 
 module instant_commands #(
@@ -16,27 +16,27 @@ module instant_commands #(
     input wire logic take_output_i,  // OUTPUT is taken now; its last halfword is on load_i
     input wire logic take_mark_i,  // MARK is taken now
     input wire logic take_pwm_i,  // PWM is taken now
-    input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
+    input wire logic over_i,  // event: a path ended: its last tick was taken (lines), or its engine has finished
     input wire logic runs_i,  // a path is under way
-    output logic mark_o,  // event: a snapshot is wanted
-    output logic [31:0] marks_o,  // those that have taken effect
+    output logic mark_o,  // event: requests a snapshot
+    output logic [31:0] marks_o,  // number of MARKs that have taken effect
     // the outputs' change
-    output logic change_o,  // combinational; PWM takes effect with it
+    output logic change_o,  // combinational: the commands that wait take effect, PWM too
     output logic [Outputs-1:0] set_o,
     output logic [Outputs-1:0] clear_o
 );
-  // From a path's last tick taken to its step on the path.
+  // Clocks from the take of a path's last tick to its step on the path.
   localparam logic [2:0] TO_STEP = 3'd6;
 
-  // Set, then clear.
+  // Masks of the command: set, then clear.
   logic [2*Outputs-1:0] words_q;
   logic                 merge_q;
-  logic                 change_waits_q;  // OUTPUT or PWM
+  logic                 change_waits_q;  // an OUTPUT or PWM waits
   logic                 mark_waits_q;
   logic                 mark_due_q;
   logic [          2:0] delay_q;
   logic                 fire;
-  logic [  Outputs-1:0] kept_set;  // of the masks, what has not taken effect
+  logic [  Outputs-1:0] kept_set;  // bits of the masks that have not taken effect
   logic [  Outputs-1:0] kept_clear;
 
   logic [         15:0] word;
@@ -46,7 +46,7 @@ module instant_commands #(
   assign fire = (change_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
   assign change_o = delay_q == 3'd1 && !cut_i;
 
-  // What has taken effect leaves the masks: a cause may give the outputs other levels before the next command.
+  // Masks that have taken effect are cleared: a cause may give the outputs other levels before the next command.
   always_ff @(posedge clk_i) begin
     words_q <= {word[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
     merge_q <= take_output_i;
@@ -70,7 +70,7 @@ module instant_commands #(
     end
   end
 
-  // Those taken, and those that have taken effect.
+  // MARKs taken, and MARKs that have taken effect.
   logic [31:0] taken_q;
 
   always_ff @(posedge clk_i) begin

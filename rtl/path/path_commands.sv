@@ -1,9 +1,9 @@
-// The card's outputs, and what commands do with outputs and inputs at their place on the path. Without the engine the
-// outputs stand as the strap says.
+// The card's outputs, and the actions of commands on outputs and inputs at their place on the path. Without the engine
+// path_commands the outputs keep the strap's levels.
 `default_nettype none
 
 module path_commands #(
-    parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1,  // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          Outputs = 4    // 1 to 16
 ) (
     input wire logic clk_i,
@@ -17,26 +17,26 @@ module path_commands #(
     // commands
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic [commands_pkg::WIDTH-1:0] commands_i,
-    output logic mark_o,  // event: a snapshot is wanted
+    output logic mark_o,  // event: requests a snapshot
     // probe
     input wire logic [feed_pkg::WIDTH-1:0] feed_i,
     input wire logic probe_clear_i,  // event
     output logic [probe_pkg::WIDTH-1:0] probe_o,
-    output logic drop_o,  // commands up to PROBE_END are not carried out
-    output logic halt_o,  // event: what runs ends here
-    output logic probe_snapshot_o,  // event: a snapshot is wanted (combinational)
+    output logic drop_o,  // commands up to PROBE_END are dropped
+    output logic halt_o,  // event: the path and the piece under way end here
+    output logic probe_snapshot_o,  // event: requests a snapshot (combinational)
     // registers
     output logic [pins_state_pkg::WIDTH-1:0] pins_state_o
 );
   if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_built
     logic [31:0] levels;
     logic [31:0] marks;
-    logic safe;  // from the end of ticks to the cut outputs stand at their safe levels
+    logic safe;  // outputs take their safe levels: from the end of ticks to the cut
     logic change;
     logic [Outputs-1:0] set;
     logic [Outputs-1:0] level;
     logic [Outputs-1:0] clear;
-    logic [Outputs-1:0] plain;  // levels without pulses
+    logic [Outputs-1:0] plain;  // levels without the pulses of PWM
 
     assign levels = input_levels_pkg::levels(inputs_i);
     assign safe   = cut_i || feed_i[feed_pkg::CLOSING];

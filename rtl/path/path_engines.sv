@@ -1,37 +1,37 @@
-// What makes steps from ticks beside the axes' own generators: the engines and the socket that they share, a prescaler
-// with the gate that gives its ticks to the engine of the path one at a time.
+// The blocks that make steps from ticks, besides the axes' own generators: the engines and the socket that they share.
+// The socket is a prescaler with a gate that gives its ticks to the path's engine one at a time.
 //
-// All paths share one domain of ticks and swaps, those of the feed as late as the prescaler's steps, so that a path on
-// prescaled ticks and a line after it cannot overtake each other. On the arc generator the axes get the prescaler's
-// ticks, a clock after the generator.
+// All paths share one domain of ticks and swaps. Those of the feed are delayed as much as the prescaler's steps, so
+// that a path on prescaled ticks and a line after it cannot overtake each other. On the arc generator the axes get the
+// prescaler's ticks, one clock after the generator.
 `default_nettype none
 
 module path_engines #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
     input wire logic tick_i,
-    input wire logic [move_pkg::WIDTH-1:0] move_i,  // with its swap the state of an engine that is not lines is loaded
+    input wire logic [move_pkg::WIDTH-1:0] move_i,  // at its SWAP the state of the engine, except for lines, is loaded
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     output logic [axis_drive_pkg::WIDTH-1:0] drive_o,  // path domain
-    output logic path_tick_o,  // an engine's tick
-    output logic ready_o,  // a tick may be taken
+    output logic path_tick_o,  // a tick of an engine
+    output logic ready_o,  // a feed tick may be taken
     output logic payload_ready_o,  // the engine's state may be loaded
-    output logic quiet_o,  // no path tick waits or is on its way to an engine, none makes a step
-    output logic shadows_free_o,  // so may the axes' increments
+    output logic quiet_o,  // no path tick waits or is on its way to an engine, and no engine is making a step
+    output logic shadows_free_o,  // the axes' increments may be loaded
     output logic done_o,  // every path tick given is finished
-    output logic missed_end_o  // with done_o: not on the commanded end point
+    output logic missed_end_o  // with done_o: the path ended away from its commanded end point
 );
   localparam logic [4:0] LINES = 5'(card_map_pkg::ENGINE_LINES);
   localparam logic [4:0] ACCUMULATOR = 5'(card_map_pkg::ENGINE_ACCUMULATOR);
   localparam logic [4:0] ARC_GENERATOR = 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
-  // Those that take the prescaler's ticks.
+  // Engines that take the prescaler's ticks.
   localparam logic [31:0] TICKED = 32'd1 << ACCUMULATOR | 32'd1 << ARC_GENERATOR;
 
-  logic [4:0] engine;  // what the path that begins runs on
+  logic [4:0] engine;  // engine of the path that begins
   logic swap;
   logic taking;  // the path still takes feed ticks
 
@@ -42,9 +42,9 @@ module path_engines #(
   logic [     2:0] tick_q;
   logic [     2:0] swap_q;
   logic            axes_tick_q;
-  logic [     1:0] own_tick_q;  // feed ticks that the axes get
-  logic            axes_run;  // on feed ticks
-  logic            chord_tick;  // a path tick that the axes get
+  logic [     1:0] own_tick_q;  // feed ticks for the axes
+  logic            axes_run;  // the axes run on feed ticks
+  logic            chord_tick;  // a path tick for the axes
 
   logic [Axes-1:0] step;
   logic [Axes-1:0] dir;
@@ -73,10 +73,10 @@ module path_engines #(
   end
 
   if ((Engines & TICKED) != 32'd0) begin : gen_engines
-    logic [       4:0] engine_q;  // of the path
+    logic [       4:0] engine_q;  // engine of the path
     logic              coming;
     logic              prescaler_step;
-    // What an engine says, from registers: {stepping, at its end, ready, dir, step}. Its steps leave before it is ready.
+    // State of an engine, from registers: {stepping, at its end, ready, dir, step}. Its steps leave before it is ready.
     logic [2*Axes+2:0] accumulator;
     logic              on_arc;
     logic              arc_ready;
@@ -85,10 +85,10 @@ module path_engines #(
     logic              at_end;
     logic              engine_ready;
 
-    // Of the engine on which the path runs.
+    // State of the engine on which the path runs.
     always_comb begin
       case (engine_q)
-        // Steps are the axes' own, and it ends where they do.
+        // The axes make the steps, and the path ends where they end.
         LINES, ARC_GENERATOR: {engine_stepping, at_end, engine_ready, dir, step} = (2 * Axes + 3)'(2'b11) << 2 * Axes;
         default: {engine_stepping, at_end, engine_ready, dir, step} = accumulator;
       endcase
@@ -175,14 +175,14 @@ module path_engines #(
           .at_end_o(accumulator[2*Axes+1])
       );
 
-      // Its steps go to the two axes of the arc's plane. The plane is loaded with the arc, that is when no other arc runs,
-      // so that one register is enough.
+      // Its steps go to the two axes of the arc's plane. The plane is loaded with the arc, when no other arc runs, so
+      // one register is enough.
       always_ff @(posedge clk_i) begin
         if (load_bus_pkg::to(load_i, load_target_pkg::PLANE)) begin
           axis_x_q <= word[6:4];
           axis_y_q <= word[10:8];
         end
-        // A direction is looked at with its step only.
+        // A direction is used only with its step.
         step_q <= '0;
         if ((step_x || step_y) && !rst_i) begin
           for (int i = 0; i < Axes; i++) begin
@@ -201,7 +201,7 @@ module path_engines #(
       logic over_q;  // the arc has given its last path tick, also to the generator
 
       assign on_arc = engine_q == ARC_GENERATOR;
-      // Only while it is under way: the next arc may start with this one's number still standing.
+      // Only while the arc is under way: the next arc may start while engine_q still has this one's number.
       always_ff @(posedge clk_i) over_q <= !taking && !coming && !shadows_free_o;
 
       arc_generator #(

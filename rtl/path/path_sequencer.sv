@@ -1,11 +1,11 @@
-// Runs one path after the other: swaps the decoded command in at the last tick of a line, waits for a path's engine
-// or for the axes of a direct move to finish, and stops at barriers.
+// Runs one path after the other: swaps the decoded command in at the last tick of a line, waits for a path's engine or
+// for the axes of a direct move to finish, and stops at barriers.
 //
-// In position streaming a line with nothing behind it goes on beyond its last tick (`stale_o`), until a path or a barrier
-// is decoded; not once the next period is missing: then only a cut ends it.
+// In position streaming a line without a successor continues beyond its last tick (`stale_o`), until a path or a
+// barrier is decoded. Once the next period is missing, only a cut ends the line.
 //
-// A swap is decided in one clock and carried out in the next, together with the tick (both leave as registers), so that
-// the last tick still meets the old increments and the next one the new.
+// A swap is decided in one clock and carried out in the next, together with the tick (both leave as registers). So the
+// last tick still meets the old increments, and the next one the new.
 `default_nettype none
 
 module path_sequencer #(
@@ -17,49 +17,49 @@ module path_sequencer #(
     input wire logic halt_i,  // event: the path ends here; no command is valid in this clock
     // decoded command
     input wire logic valid_i,  // a path or a barrier
-    input wire logic [4:0] engine_i,  // what a path runs on, by its number, card_map_pkg::ENGINE_*
+    input wire logic [4:0] engine_i,  // number of the path's engine, card_map_pkg::ENGINE_*
     input wire logic barrier_i,
     input wire logic [Axes-1:0] mask_i,
-    output logic pop_o,  // taken now (combinational)
+    output logic pop_o,  // the command is taken now (combinational)
     // direct move: the chains are loaded
     input wire logic direct_go_i,
     input wire logic [Axes-1:0] direct_mask_i,
     // position streaming
-    input wire logic streaming_i,  // the mode
+    input wire logic streaming_i,  // position streaming is in force
     input wire logic lost_i,  // the next period is missing, or a cut is due: nothing begins
     output logic period_ends_o,  // a period's last tick is taken (combinational)
-    output logic goes_on_o,  // the line goes on beyond it (combinational)
-    output logic stale_o,  // it has gone on
+    output logic goes_on_o,  // the line continues beyond the period (combinational)
+    output logic stale_o,  // the line has continued beyond its period
     // ticks
     input wire logic take_i,
     input wire logic last_i,
     output logic taking_o,  // ticks may be taken
     output logic swap_o,  // a path begins with the next tick
-    output logic begin_o,  // as swap_o, a clock earlier (combinational)
+    output logic begin_o,  // swap_o one clock earlier (combinational)
     output logic [Axes-1:0] active_o,  // sampled with swap_o
-    output logic [4:0] engine_o,  // sampled with swap_o: what the path runs on
+    output logic [4:0] engine_o,  // sampled with swap_o: engine of the path
     output logic direct_o,  // a direct move is under way
     // ends
     input wire logic axes_live_i,
     input wire logic done_i,  // every path tick given is finished
-    input wire logic missed_end_i,  // with done_i: not on the commanded end point
-    output logic engine_taken_o,  // by a path that still takes ticks (combinational)
+    input wire logic missed_end_i,  // with done_i: the path ended away from its commanded end point
+    output logic engine_taken_o,  // the engine is taken by a path that still takes ticks (combinational)
     output logic incomplete_o,  // event: a path missed its end point
-    output logic over_o,  // event: a path has ended; on lines its last tick was taken
+    output logic over_o,  // event: a path ended: its last tick was taken (lines), or its engine has finished
     input wire logic barrier_done_i,
     output logic at_barrier_o,
     output logic path_active_o,
-    output logic unfinished_o  // it has ticks to take (combinational)
+    output logic unfinished_o  // the path under way has ticks to take (combinational)
 );
   // Clocks from the last enabled clock of a direct move until the axes are asked whether one is live.
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;
   localparam logic [4:0] LINES = 5'(card_map_pkg::ENGINE_LINES);
-  // The axes' own generators make its steps.
+  // With this engine, too, the axes' own generators make the steps.
   localparam logic [4:0] ARC_GENERATOR = 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
 
-  logic       idle_q;  // no path
-  logic       drain_q;  // the last tick is taken, the path goes on
-  logic       drained_q;  // a clock later: done_i knows of the last tick
+  logic       idle_q;  // no path is under way
+  logic       drain_q;  // the last tick is taken, but the path has not ended
+  logic       drained_q;  // drain_q one clock later: done_i includes the last tick
   logic [2:0] settle_q;
   logic       settled_q;
   logic       on_lines;

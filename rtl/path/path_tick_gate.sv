@@ -1,8 +1,9 @@
-// Path ticks: counts what the prescaler has made and gives them to the engine of the path one at a time; says when
-// all are finished.
+// Path ticks: counts the prescaler's steps and gives them to the path's engine one at a time; tells when all are
+// finished.
 //
-// `ready_o` falls while two or more wait. The take reaches the prescaler one clock later and its step this counter three
-// after that, so that at most seven wait: three bits would do, four leave room for a step at the same time.
+// `ready_o` falls while two or more ticks wait. A tick that is taken reaches the prescaler one clock later, and its
+// step reaches this counter three clocks after that. So at most seven wait: three bits would be enough; four leave room
+// for a step at the same time.
 `default_nettype none
 
 module path_tick_gate (
@@ -15,15 +16,15 @@ module path_tick_gate (
     input  wire logic engine_stepping_i,  // the engine is not in the last clocks of a step
     output logic      tick_o,             // to the engine
     output logic      ready_o,            // feed ticks may be taken
-    output logic      payload_ready_o,    // as done_o, earlier by the clocks from there to a halfword on the load bus
-    output logic      done_o              // nothing is coming or waits and the engine has finished the last one
+    output logic      payload_ready_o,    // like done_o, but earlier, by the latency of a halfword on the load bus
+    output logic      done_o              // no tick is coming or waits, and the engine has finished the last one
 );
   logic [3:0] count_q;
   logic       waiting_q;
   logic       give;
   logic       quiet;
 
-  // An engine answers a tick with ready low in the next clock: none is given in that clock.
+  // An engine lowers ready in the clock after a tick, so no tick is given in the clock of tick_o.
   assign give  = waiting_q && engine_ready_i && !tick_o;
   assign quiet = !coming_i && !waiting_q && !tick_o;
 

@@ -1,12 +1,12 @@
-// Position streaming: periods are lines. A line whose last tick is taken while nothing follows goes on along itself; its
-// ticks beyond its end are counted, and after STREAMING.stale_periods times its own number of them the next period is
-// missing: from then on the line goes on until the card stands.
+// Position streaming: periods are lines. If nothing follows when the last tick of a line is taken, the line continues
+// along itself and its ticks beyond the end are counted. After STREAMING.stale_periods times its own number of ticks,
+// the next period is missing; from then on the line continues until the card is at rest.
 //
-// Two counters of 40 bits: ticks left of the present time round, and what they begin at. A tick may come every clock: so
-// whether the next one is a round's last is worked out a tick ahead.
+// Two counters of 40 bits: the ticks left of the present round, and their initial value. A tick may come in every
+// clock, so it is computed one tick ahead whether the next one is the last of a round.
 //
-// The mode changes only at rest, and not inside a command on its way in: so the under-run guard, which counts nothing
-// meanwhile, goes on with the queues empty.
+// The mode changes only at rest, and not inside a command on its way in. So the under-run guard, which counts nothing
+// in this mode, resumes with empty queues.
 `default_nettype none
 
 module position_streaming (
@@ -17,15 +17,15 @@ module position_streaming (
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     input wire logic rest_i,  // nothing is queued or runs
     input wire logic begin_i,  // a path begins
-    input wire logic [39:0] count_i,  // its ticks, in the clock after begin_i
+    input wire logic [39:0] count_i,  // number of its ticks, in the clock after begin_i
     input wire logic period_ends_i,  // a period's last tick is taken
-    input wire logic goes_on_i,  // the line goes on beyond it
-    input wire logic stale_i,  // it has gone on
+    input wire logic goes_on_i,  // the line continues beyond the period
+    input wire logic stale_i,  // the line has continued beyond its period
     input wire logic take_i,
-    output logic streaming_o,  // the mode
-    output logic missing_o,  // event
-    output logic lost_o,  // since then, until the cut
-    output logic [31:0] ticks_o  // beyond the end of the last period that ended
+    output logic streaming_o,  // position streaming is in force
+    output logic missing_o,  // event: the next period is missing
+    output logic lost_o,  // from missing_o until the cut
+    output logic [31:0] ticks_o  // ticks beyond the end of the last period that ended
 );
   logic        on_q;
   logic [ 7:0] stale_periods_q;
@@ -54,10 +54,10 @@ module position_streaming (
   logic [39:0] left_q;
   logic        short_q;  // the line has one tick
   logic        last_q;  // the next tick ends a round
-  logic [ 7:0] rounds_q;  // left
+  logic [ 7:0] rounds_q;  // rounds left
   logic        one;
   logic        missing;
-  logic        stale_tick;  // beyond the end of the line
+  logic        stale_tick;  // a tick beyond the end of the line
   assign stale_tick = take_i && stale_i;
   assign one = count_i == 40'd1;
   assign missing = goes_on_i && !lost_o &&

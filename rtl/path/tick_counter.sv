@@ -1,31 +1,32 @@
-// Counts the ticks of a path or a piece, 40 bits: `last_o` says that the next tick taken is the last one. The next count
-// is shifted in from the load bus meanwhile, with the zero flags that come with it when it is loaded.
+// Counts the ticks of a path or a piece, 40 bits: `last_o` says that the next tick taken is the last one. The next
+// count is shifted in from the load bus in the meantime; a load takes it together with its zero flags.
 //
-// Four fast bits take every tick; the upper 36 bits follow in two parts with registered borrows and zero flags. They
-// change at most once in 16 ticks, so their flags, renewed with each tick, are settled long before the fast bits reach 1.
-// The loaded value comes with its flags, so that a count of 1 is recognised in the clock after the load; its upper parts are
-// taken one clock later, so that the late load_i does not reach so many flip-flops: the next count stands until then.
+// Four fast bits count every tick. The upper 36 bits follow in two parts with registered borrows and zero flags. They
+// change at most once in 16 ticks, so their flags, updated with each tick, are valid long before the fast bits reach 1.
+// The loaded value comes with its flags, so that a count of 1 is recognised in the clock after the load. Its upper
+// parts are taken one clock later, so that the late load_i does not reach so many flip-flops; the next count keeps its
+// value until then.
 `default_nettype none
 
 module tick_counter (
     input wire logic clk_i,
     input wire logic rst_i,
-    // a halfword of the next count, which is at least 1 where ticks count it
+    // a halfword of the next count; the count is at least 1 if ticks count it
     input wire logic next_i,
     input wire logic [15:0] word_i,
     output logic [39:0] count_o,  // the next count; still there in the clock after load_i
-    output logic zero_o,  // it is 0; two clocks late
-    input wire logic load_i,  // take it
+    output logic zero_o,  // the next count is 0; delayed by two clocks
+    input wire logic load_i,  // takes the next count
     input wire logic take_i,
-    output logic [39:0] left_o,  // ticks; right three clocks after the last load or take
+    output logic [39:0] left_o,  // ticks left; valid three clocks after the last load or take
     output logic last_o
 );
-  logic [39:0] count_q;  // the next one
+  logic [39:0] count_q;  // the next count
   assign count_o = count_q;
-  logic [7:0] top_pass_q;  // of the third halfword nothing counts, but the first two pass here
+  logic [7:0] top_pass_q;  // upper byte of the third halfword: unused, but the first two halfwords pass here
   logic       loaded_q;
   logic       settled_q;
-  logic       next_low_zero_q;  // of bits 3 to 0, 19 to 4, 39 to 20, a clock late
+  logic       next_low_zero_q;  // zero flags of bits 3 to 0, 19 to 4, 39 to 20, delayed by a clock
   logic       next_mid_zero_q;
   logic       next_top_zero_q;
 
@@ -42,7 +43,7 @@ module tick_counter (
   end
 
   logic [ 3:0] low_q;
-  logic [15:0] mid_q;  // these two inverted: so they count up, and load and count fit one 4-input table a bit
+  logic [15:0] mid_q;  // mid_q and top_q are inverted: they count up, so load and count fit one 4-input table per bit
   logic [19:0] top_q;
   assign left_o = {~top_q, ~mid_q, low_q};
 
@@ -52,7 +53,7 @@ module tick_counter (
   logic        top_borrow_q;
   logic        load_q;
 
-  // The added load changes nothing (a load overrides the sum); it lets table and carry share an input.
+  // The added load enable has no effect, because a load overrides the sum; it lets table and carry share an input.
   logic [15:0] mid_sum;
   logic [19:0] top_sum;
   assign mid_sum = mid_q + {16{load_q}} + 16'd1;
@@ -76,7 +77,7 @@ module tick_counter (
         end
       end
     end
-    // A borrow beside a load meets the upper parts in the clock in which they are taken, which goes before.
+    // A borrow in the clock of a load meets the upper parts when they are taken; taking has priority.
     mid_borrow_q <= take_i && low_q == 4'd0;
     top_borrow_q <= mid_borrow_q && mid_zero_q && !load_q;
     load_q <= load_i;

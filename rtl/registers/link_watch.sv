@@ -1,9 +1,9 @@
-// The watch over the link to the session that writes: the one whose word of the stream, or whose LINK_TIMEOUT, was
-// accepted last. Each access of it that is accepted starts the time of LINK_TIMEOUT anew; when that has passed, lost_o
-// rises and stays until LINK_TIMEOUT is written. Accesses of other ports, of a later session at its port, and those that
-// belong to no session count for nothing.
+// Watches the link to the session that writes: the session whose word of the stream, or whose LINK_TIMEOUT, was
+// accepted last. Each accepted access of this session restarts the time of LINK_TIMEOUT. When the time has passed,
+// lost_o rises and stays high until LINK_TIMEOUT is written. Accesses of other ports, of a later session at the same
+// port, and those without a session do not count.
 //
-// The time passes between its units and one more: units are those of the time counter.
+// The time lasts between LINK_TIMEOUT and LINK_TIMEOUT + 1 units; units are those of the time counter.
 `default_nettype none
 
 module link_watch (
@@ -11,18 +11,18 @@ module link_watch (
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [register_access_pkg::WIDTH-1:0] access_i,
-    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i,  // to it
-    input wire logic unit_i,  // a bit of the time counter that turns each unit
-    output logic gone_o,  // the session that wrote is no more: another one is at its port
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i,  // answer to access_i
+    input wire logic unit_i,  // a bit of the time counter that changes once per unit
+    output logic gone_o,  // the session that wrote has ended: another one is at its port
     output logic lost_o
 );
   logic        ack;
   logic        accepted;
-  logic        sets;  // LINK_TIMEOUT
+  logic        sets;  // LINK_TIMEOUT is written
   logic        claims;
   logic        feeds;
-  logic        at_port;  // of the writing session
-  logic        begins;  // there
+  logic        at_port;  // access of a session at the port of the writing session
+  logic        begins;  // a new session begins at that port
   logic [31:0] data;
   logic [15:0] time_set;
   logic        unit;
@@ -30,7 +30,7 @@ module link_watch (
   logic        none_left;
   logic        unit_q;
   logic [ 1:0] writer_q;
-  logic        written_q;  // there is, or was, one
+  logic        written_q;  // there is, or was, a writing session
   logic [15:0] timeout_q;
   logic        watches_q;
   logic [15:0] left_q;

@@ -1,12 +1,12 @@
-// Carries one access at a time through: judges it by the register map, acts, answers.
+// Carries out one access at a time: judges it by the register map, acts, answers.
 //
-// The access stands still from request_i to ack_o. What a write does goes out in the clock of its ack_o; a flush a clock
-// before, so that its refusal finds the access that asked for it. What is known of an access is kept until the next one:
-// nothing moves in between.
+// The access keeps its values from the request until ack_o. The effects of a write go out in the clock of its ack_o. A
+// flush goes out one clock earlier, so that its refusal meets the access that requested it. The decoded properties of
+// an access are kept until the next one, since they do not change in between.
 `default_nettype none
 module register_access #(
     parameter int          Axes    = 4,  // 1 to 8
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -16,9 +16,9 @@ module register_access #(
     input wire logic writing_i,  // the RAM is being written
     input wire logic direct_i,  // a direct move is under way
     // reads
-    output logic live_o,  // the register reads as the card stands
-    output logic sample_o,  // combinational: a live register is taken
-    output logic read_o,  // with ack_o: what was read is to be shown
+    output logic live_o,  // the register shows the present state of the card
+    output logic sample_o,  // combinational: a live register is sampled
+    output logic read_o,  // with ack_o: the answer carries the data that was read
     // writes
     output logic [setting_bus_pkg::WIDTH-1:0] setting_o,
     output logic [31:0] clear_fault_o,
@@ -26,7 +26,7 @@ module register_access #(
     output logic abort_o,
     output logic probe_clear_o,
     output logic flush_o,  // combinational
-    // who answers a word of the stream and START
+    // the units that answer a word of the stream and START
     output logic stream_write_o,
     input wire logic [stream_answer_pkg::WIDTH-1:0] stream_answer_i,
     output logic start_o,
@@ -38,12 +38,12 @@ module register_access #(
 
   typedef enum logic [2:0] {
     IDLE,
-    DECODE,   // what the access aims at is looked up
-    WAIT,     // it is judged; whoever writes the RAM goes first
-    ACT,      // refuse or act; the RAM's word is in its first register
-    RESPOND,  // the RAM's word gets into its second register
-    STREAM,   // wait for the command checker's judgement
-    START     // wait for the direct loader's
+    DECODE,   // the properties of the register are looked up
+    WAIT,     // the access is judged; other writers of the RAM go first
+    ACT,      // the access is refused or acts; the RAM's word is in its first register
+    RESPOND,  // the RAM's word moves into its second register
+    STREAM,   // waits for the command checker
+    START     // waits for the direct loader
   } state_e;
 
   state_e        state_q;
@@ -59,10 +59,10 @@ module register_access #(
   assign word    = register_access_pkg::word(access_i);
   assign data    = register_access_pkg::data(access_i);
 
-  // What the access aims at.
+  // Properties of the register that the access addresses.
   logic [2:0] kind_q;
   logic       absent_q;
-  logic [3:0] stray_q;  // bytes with bits that must be 0
+  logic [3:0] stray_q;  // by byte: a bit that must be 0 is 1
   logic       in_limits_q;
   logic       sets_q;  // a write goes to the setting bus
   logic       control_q;
@@ -85,13 +85,13 @@ module register_access #(
       absent_q <= !register_access_pkg::aligned(access_i) || (only_present && {1'b0, axis} >= AXIS_COUNT);
       for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
-      // SET_PLACE, CAPTURE_CLEAR and CAPTURE_NEXT do, too, though nothing of them is read back.
+      // SET_PLACE, CAPTURE_CLEAR and CAPTURE_NEXT go to the setting bus, too, though they cannot be read back.
       sets_q <= card_map_pkg::register_access(
           word, Engines
       ) == card_map_pkg::ACCESS_SETTING || word == card_map_pkg::ADDR_SET_PLACE[11:2] ||
           word == card_map_pkg::ADDR_CAPTURE_CLEAR[11:2] || word == card_map_pkg::ADDR_CAPTURE_NEXT[11:2];
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
-      // An abort beside it does more than a flush.
+      // An abort in the same write does more than a flush, so it replaces the flush.
       flush_q <= word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
           !data[card_map_pkg::BIT_CONTROL_ABORT];
       fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
@@ -101,7 +101,7 @@ module register_access #(
     end
   end
 
-  // The stream belongs to a port from a command's first word to its last.
+  // A port owns the stream from the first word of a command to its last.
   logic [1:0] owner_q;
   logic       stream_busy;
 
@@ -208,7 +208,8 @@ module register_access #(
   assign act = acting_q && good_q && write;
   assign waiting = writing_i && (write || !live_o);
   assign sample_o = acting_q;
-  // By the map, by the direct loader, or by the checker: while its access waits, or in the clock after a flush.
+  // The map, the direct loader or the checker refuses. The checker does so while its access waits, or in the clock
+  // after a flush.
   assign start_refused = start_answer_i[start_answer_pkg::DONE] && start_answer_i[start_answer_pkg::ERROR];
 
   assign refuse = acting_q ? !good_q : state_q == START ? start_refused : stream_answer_i[stream_answer_pkg::REFUSE];
@@ -222,7 +223,7 @@ module register_access #(
   logic set_q;
 
   assign setting_o = setting_bus_pkg::pack(set_q, word, data);
-  assign flush_o   = acting_q && good_q && flush_q;  // only a write of CONTROL is good
+  assign flush_o   = acting_q && good_q && flush_q;  // CONTROL is write-only, so good_q implies a write
 
   always_ff @(posedge clk_i) begin
     set_q <= act && sets_q;

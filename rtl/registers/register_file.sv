@@ -4,12 +4,12 @@
 module register_file #(
     parameter int          Axes          = 4,     // 1 to 8
     parameter int          Ports         = 1,     // 1 to 4
-    parameter logic [31:0] Engines       = '1,    // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines       = '1,    // built-in engines: bits card_map_pkg::ENGINE_*
     parameter int          GeometryDepth = 4096,  // halfwords, of the queues
     parameter int          FeedDepth     = 2560,
-    parameter int          Inputs        = 4,     // 1 to 32, of a card with path commands
+    parameter int          Inputs        = 4,     // 1 to 32; used with path commands
     parameter int          Outputs       = 4,
-    parameter int          Captures      = 0,     // units
+    parameter int          Captures      = 0,     // capture units
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0
@@ -17,7 +17,7 @@ module register_file #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [31:0] clock_hz_i,  // strap
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     // the access
     input wire logic [register_access_pkg::WIDTH-1:0] access_i,
     output logic [register_answer_pkg::WIDTH-1:0] answer_o,
@@ -30,16 +30,16 @@ module register_file #(
     input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
     input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
-    output logic [31:0] status_o,  // combinational; refused is any port's
-    // what writes do
+    output logic [31:0] status_o,  // combinational; its bit REFUSED shows a refusal of any port
+    // effects of writes
     output logic [setting_bus_pkg::WIDTH-1:0] setting_o,
     output logic [31:0] clear_fault_o,
-    output logic session_gone_o,  // the one that wrote the stream is no more
+    output logic session_gone_o,  // the session that wrote the stream has been replaced by another
     output logic link_lost_o,
     output logic abort_o,
     output logic probe_clear_o,
     output logic flush_o,  // combinational
-    output logic filling_o,  // after a reset: no snapshot may be asked for yet
+    output logic filling_o,  // after a reset: no snapshot may be requested yet
     // the stream of commands
     output logic stream_write_o,
     input wire logic [stream_answer_pkg::WIDTH-1:0] stream_answer_i,
@@ -47,14 +47,14 @@ module register_file #(
     output logic [start_pkg::WIDTH-1:0] start_o,
     input wire logic [start_answer_pkg::WIDTH-1:0] start_answer_i,
     // snapshots
-    input wire logic stop_i,  // events: a snapshot is wanted
+    input wire logic stop_i,  // events: each requests a snapshot
     input wire logic rest_i,
     input wire logic probe_i,
     input wire logic mark_i,
-    input wire logic [capture_pkg::WIDTH-1:0] capture_i,  // its ASK: levels, likewise
+    input wire logic [capture_pkg::WIDTH-1:0] capture_i,  // field ASK: levels, each requests a snapshot
     output logic [capture_answer_pkg::WIDTH-1:0] capture_answer_o,
-    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,  // the chain's near end
-    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o  // behind FAULT and STATUS
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,  // near end of the chain
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o  // the chain after FAULT and STATUS
 );
 
   localparam logic MORE_AXES = Axes > 4;
@@ -203,7 +203,7 @@ module register_file #(
   if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO]) begin : gen_capture_fifo
     logic of_oldest_q;
 
-    // The access stands still from its request on.
+    // The access keeps its values from its request on.
     always_ff @(posedge clk_i) of_oldest_q <= word[9:4] == card_map_pkg::AREA_CAPTURE_HEAD[11:6];
     assign of_oldest = of_oldest_q;
 
@@ -228,7 +228,7 @@ module register_file #(
     assign of_oldest = 1'b0;
   end
 
-  // The direct loader owns the RAM's read side from its start to its end; the START write waits all the while.
+  // The direct loader owns the RAM's read port from its start to its end. The write of START waits during this time.
   logic loading_q;
 
   always_ff @(posedge clk_i) begin
@@ -267,7 +267,7 @@ module register_file #(
 
   assign capture_answer_o = capture_answer_pkg::pack(queue_full, queued, captured);
 
-  logic unused;  // the chain's strobe and shift come round; without a queue nothing is for it
+  logic unused;  // strobe and shift return with the chain; without a queue fields of capture_i are unused
   assign unused = &{1'b0, snapshot_i, written[31:8], capture_i};
 
 endmodule

@@ -1,6 +1,6 @@
-// Where the block RAM of the registers holds a word of the map. The window has room for what is not built, so the RAM
-// holds the built ranges alone: 256 words, 512 where the card has more than 4 axes or machine inputs, 1,024 where it has
-// more than 4 axes and captures, enables or soft limits.
+// The place of each word of the map in the block RAM of the registers. The address window has room for units that are
+// not built, but the RAM holds only the ranges that are built: 256 words; 512 if the card has more than 4 axes, machine
+// inputs or enables; 1,024 if it has more than 4 axes and captures, enables or soft limits.
 //
 //   00_0000_iiii  identity, word i                    00_001g_ggii  settings, group g, word i
 //   00_0001_iiii  latched values of REST, word i
@@ -13,9 +13,9 @@
 //   01_1110_iiii  enables, up to 4 axes              10_0100_iiii  enables with more
 //   01_1111_nnni  soft limits of axis n, up to 4      10_0101_nnni  soft limits with more
 //
-// With up to 4 axes a capture has 12 words, and the settings take what is left of its 16. All that is written lies in the
-// lower 256 words, but for filters, roles, captures, enables and soft limits: the sweep after reset takes the same time
-// with any axes.
+// With up to 4 axes a capture uses 12 of its 16 words, and the settings of the captures use the other four. All words
+// that are written lie in the lower 256, except for filters, roles, captures, enables and soft limits. Without those,
+// the sweep after a reset takes the same time with any number of axes.
 `default_nettype none
 package register_fold_pkg;
 
@@ -53,7 +53,7 @@ package register_fold_pkg;
     is_setting = place[9:5] == 5'b00001;
   endfunction
 
-  // The word of the map at a place that is_setting().
+  // The map's word at a place for which is_setting() is true.
   function automatic logic [9:0] setting_word(input logic [9:0] place);
     setting_word = {3'b011, place[4:2], 2'b00, place[1:0]};
   endfunction

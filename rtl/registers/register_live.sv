@@ -1,13 +1,13 @@
-// The registers that read as the card stands, STATUS and REFUSAL among them, the interrupt, and the far end of the
-// snapshot chain: FAULT and STATUS. data_o is, a clock after sample_i, the live register that is read; four bits of its
-// address tell the live registers apart, but CAPTURE_STATE and CAPTURE_QUEUE.
+// The live registers, which show the present state of the card (STATUS and REFUSAL are among them), the interrupt, and
+// the far end of the snapshot chain: FAULT and STATUS. One clock after sample_i, data_o is the live register that is
+// read. Four address bits tell the live registers apart, except for CAPTURE_STATE and CAPTURE_QUEUE.
 //
-// Each port has a REFUSAL of its own, which keeps the port's first refusal until the port clears it. Refusals and clears
-// never meet: one access is carried through at a time.
+// Each port has its own REFUSAL, which keeps the port's first refusal until the port clears it. A refusal and a clear
+// never come together, since accesses are carried out one at a time.
 `default_nettype none
 module register_live #(
     parameter int          Ports   = 1,  // 1 to 4
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -15,7 +15,7 @@ module register_live #(
     input wire logic [register_access_pkg::WIDTH-1:0] access_i,
     input wire logic sample_i,
     input wire logic [refusal_pkg::WIDTH-1:0] refusal_i,
-    // what is shown
+    // state that the registers show
     input wire logic busy_i,
     input wire logic [time_state_pkg::WIDTH-1:0] time_state_i,
     input wire logic [geometry_state_pkg::WIDTH-1:0] geometry_state_i,
@@ -27,7 +27,7 @@ module register_live #(
     input wire logic [31:0] capture_queue_i,
     input wire logic snapshotting_i,
     input wire logic incomplete_i,  // the stream is inside a command
-    output logic [31:0] status_o,  // combinational; refused is any port's
+    output logic [31:0] status_o,  // combinational; its bit REFUSED shows a refusal of any port
     output logic [31:0] data_o,
     output logic irq_o,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
@@ -124,7 +124,7 @@ module register_live #(
           data_o <= 32'(roles_i);
         else data_o <= time_state_pkg::underruns(time_state_i);
       endcase
-      // These two lie beside the captures' areas.
+      // CAPTURE_STATE and CAPTURE_QUEUE lie next to the areas of the captures.
       if (Engines[card_map_pkg::ENGINE_CAPTURES] && address[11:6] == card_map_pkg::ADDR_CAPTURE_STATE[11:6]) begin
         data_o <= capture_state_i;
         if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO] && address[5:2] == card_map_pkg::ADDR_CAPTURE_QUEUE[5:2])

@@ -1,10 +1,11 @@
-// The block RAM behind the registers: constants, the settings' shadow, snapshots and the direct mode's registers.
+// The block RAM behind the registers: constants, copies of the settings, snapshots and the registers of direct mode.
 //
-// Constants and descriptors are its initial content, which nothing overwrites. After reset the other words are written
-// with their reset values in 256 clocks, with machine inputs in 354, or 482 with more than 4 axes, which enables take there,
-// too, with captures in 450 or 614, in the order in which the low bits of the time counter run; writing_o tells whether a
-// word may still be on its way. Settings and words of a snapshot never come together, nor before that is over: accesses
-// wait for it, and so does the one cause of a stop that can come so early, the emergency stop (inputs_part).
+// Constants and descriptors are its initial content, which nothing overwrites. After a reset the other words are
+// written with their reset values, in the order in which the low bits of the time counter run. This sweep takes 256
+// clocks; with machine inputs 354, or 482 with more than 4 axes (enables take 482 there, too); with captures 450 or
+// 614. writing_o tells whether a word may still be on its way. Settings and words of a snapshot never come together,
+// nor before the sweep is over: accesses wait for it, and so does the emergency stop, the only cause of a stop that can
+// come so early (inputs_part).
 // data_o is the word at place_i two clocks earlier.
 `default_nettype none
 module register_ram #(
@@ -17,12 +18,12 @@ module register_ram #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [31:0] clock_hz_i,  // strap
-    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [2*Axes-1:0] idle_level_i,  // level before and in reset: {second pins, first pins}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] store_i,  // a word of a snapshot
-    input wire logic [9:0] clocks_i,  // since reset, the low bits
-    input wire logic [9:0] place_i,  // as register_fold_pkg has it
-    output logic filling_o,  // the words are written with their reset values: nothing else may be
+    input wire logic [9:0] clocks_i,  // low bits of the clocks since reset
+    input wire logic [9:0] place_i,  // place as in register_fold_pkg
+    output logic filling_o,  // the reset values are being written; nothing else may be written
     output logic writing_o,
     output logic [31:0] data_o
 );
@@ -38,9 +39,10 @@ module register_ram #(
   localparam logic [9:0] FIRST_MODE = register_fold_pkg::place_of(card_map_pkg::ADDR_MODE[11:2], MORE_AXES);
   localparam logic [9:0] AXIS_SLOTS = 10'o070;
 
-  // The counter is two clocks late: it begins at 0x3FE. All that is written lies in the lower 256 words, but for filters
-  // and roles, which have 96 from 256 or 384 on, captures, the last of whose words is swept last, enables and soft limits.
-  // These two are written in the clocks of the descriptors, which are constants; with more than 4 axes they lie beyond 256.
+  // The counter is delayed by two clocks: it begins at 0x3FE. All words that are written lie in the lower 256, except
+  // for filters and roles (96 words from 256 or 384 on), captures (whose last word is swept last), enables and soft
+  // limits. Enables and soft limits are written in the clocks of the descriptors, which are constants; with more than 4
+  // axes the descriptors lie beyond 256.
   localparam logic BEYOND = MACHINE_INPUTS || (ENABLES && MORE_AXES);
   localparam logic [9:0] LAST_SWEPT = CAPTURES ? (MORE_AXES ? 10'h263 : 10'h1BF) :
       !BEYOND ? 10'h0FD : MORE_AXES ? 10'h1DF : 10'h15F;
@@ -62,7 +64,8 @@ module register_ram #(
   assign setting  = setting_i[setting_bus_pkg::SET];
   assign snapshot = store_i[setting_bus_pkg::SET];
 
-  // The write port, registered: those who write take turns, and give 0 when it is not theirs.
+  // The write port, registered. The writers take turns; each gives 0 when it is not its turn, so that their values can
+  // be ORed.
   always_ff @(posedge clk_i) begin : p_store
     logic [ 9:0] swept;
     logic [31:0] reset_value;
@@ -108,7 +111,7 @@ module register_ram #(
 
   initial for (int i = 0; i < 1 << BITS; i++) memory[i] = content(10'(i));
 
-  // Nothing overwrites constants, whatever the flip-flops hold before the first reset.
+  // Nothing overwrites constants, even if the flip-flops have arbitrary values before the first reset.
   logic [9:0] stored_at;
   logic identity;
   logic descriptor;
@@ -117,18 +120,18 @@ module register_ram #(
   assign identity   = register_fold_pkg::is_identity(stored_at) && stored_at != CLOCK_HZ;
   assign descriptor = register_fold_pkg::is_descriptor(stored_at, MORE_AXES);
 
-  // Not always_ff: the initial content drives the memory, too.
+  // Not always_ff, because the initial content drives the memory, too.
   always @(posedge clk_i) begin
     if (store_q && !identity && !descriptor) memory[store_place_q[BITS-1:0]] <= store_data_q;
     memory_q <= memory[place_i[BITS-1:0]];
     data_o   <= memory_q;
   end
 
-  // Of a snapshot its writer tells. An access after a reset asks two clocks later at the earliest.
+  // snapshot_writer reports its own words. An access after a reset looks at writing_o two clocks later at the earliest.
   assign writing_o = store_q;
   assign filling_o = resetting_q;
 
-  logic unused;  // of a smaller RAM
+  logic unused;  // bits for a larger RAM
   assign unused = &{1'b0, store_place_q, place_i};
 
 endmodule

@@ -1,8 +1,8 @@
-// One word of the snapshot chain: takes its value at a strobe, and hands the chain on towards the RAM at a shift.
+// One word of the snapshot chain: takes its value at a strobe, and passes the chain on towards the RAM at a shift.
 `default_nettype none
 
 module snapshot_slice #(
-    parameter int Width = 32  // of the widest word that passes
+    parameter int Width = 32  // bits of the widest word that passes
 ) (
     input wire logic clk_i,
     input wire logic [Width-1:0] value_i,

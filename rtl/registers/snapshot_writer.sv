@@ -1,37 +1,37 @@
-// Takes snapshots: strobes the chain of latched values and writes what it brings, and the time, to the RAM's area of
-// whoever asked, a word a clock.
+// Takes snapshots: strobes the chain of latched values, and writes its words and the time to the requester's area of
+// the RAM, one word per clock.
 //
-// The strobe is given in the clock after the request. The words follow two clocks later, the time first: an access that
-// was let through just before a stop's request has written its setting by then. Requests go in the order stop, rest,
-// probe, captures, MARK, host. Those of a stop, of its rest and of the probe's edge break into any other, a MARK's into the
-// host's; those of captures, of a MARK and of the host are then taken anew. A MARK does not break into a snapshot that is
-// taken anew.
+// The strobe comes one clock after the request. The words follow two clocks later, the time first. By then an access
+// that was let through just before a stop's request has written its setting. The order of requests is stop, rest,
+// probe, captures, MARK, host. Those of a stop, of its rest and of the probe's edge interrupt any other snapshot; a
+// MARK's interrupts the host's. Interrupted snapshots of captures, of a MARK and of the host are taken again. A MARK
+// does not interrupt a snapshot that is being taken again.
 //
-// A capture breaks into none, and a MARK that waits goes before a second capture. Neither follows on another snapshot
-// without a clock between, in which an access gets through; the host's follows at once. So neither a row of MARKs nor
-// inputs that chatter keep the host waiting. A capture asks until it is told that its area has the snapshot; if it takes
-// that back meanwhile, it is not told.
-// The chain's words go down from the last position; the words below the time follow those above it.
+// A capture interrupts no snapshot, and a waiting MARK goes before a second capture. Neither of the two directly
+// follows another snapshot: there is a clock in between, in which an access gets through. The host's follows directly.
+// So neither a series of MARKs nor chattering inputs keep the host waiting. A capture requests until it is told that
+// its area has the snapshot; if it withdraws the request in the meantime, it is not told.
+// The chain delivers its words from the last position downwards; the words below the time follow those above it.
 `default_nettype none
 module snapshot_writer #(
     parameter int Axes = 4  // 1 to 8
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic host_i,  // events: a snapshot is wanted
+    input wire logic host_i,  // events: each requests a snapshot
     input wire logic stop_i,
     input wire logic rest_i,
     input wire logic probe_i,
     input wire logic mark_i,
-    input wire logic [3:0] capture_i,  // levels, of the units: a snapshot is wanted
-    input wire logic [31:0] word_i,  // what the chain brings
+    input wire logic [3:0] capture_i,  // levels, by unit: each requests a snapshot
+    input wire logic [31:0] word_i,  // word at the near end of the chain
     output logic strobe_o,
     output logic rest_o,  // the snapshot under way is for REST
     output logic shift_o,
     output logic active_o,  // from the strobe until the last word is in the RAM
-    output logic [3:0] captured_o,  // events, combinational: it is taken
-    output logic [9:0] clocks_o,  // since reset, two clocks late: the low bits
-    output logic unit_o,  // bit 16 of them: turns each unit of LINK_TIMEOUT
+    output logic [3:0] captured_o,  // events, by unit (combinational): the snapshot is taken
+    output logic [9:0] clocks_o,  // low bits of the clocks since reset, delayed by two clocks
+    output logic unit_o,  // bit 16 of these clocks: changes once per unit of LINK_TIMEOUT
     output logic [setting_bus_pkg::WIDTH-1:0] store_o  // combinational; 0 when there is nothing to write
 );
 
@@ -42,14 +42,14 @@ module snapshot_writer #(
   localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
 
-  // The areas have 32 words each, of which the first 16 are used. REST lies behind the other four; behind REST the captures,
-  // 16 words each: capture 0 is the one from half of the second area on.
+  // Each area has 32 words, of which the first 16 are used. REST lies behind the other four. The captures follow REST
+  // with 16 words each; capture 0 begins at half of the second area.
   localparam logic [1:0] SNAP = card_map_pkg::AREA_SNAP[8:7];
   localparam logic [1:0] STOP = card_map_pkg::AREA_STOP[8:7];
   localparam logic [1:0] PROBE = card_map_pkg::AREA_PROBE[8:7];
   localparam logic [1:0] MARK = card_map_pkg::AREA_MARK[8:7];
 
-  // Clocks since reset as they are written down: two clocks late, the high word three.
+  // Clocks since reset, as they are written: delayed by two clocks, the high word by three.
   logic        carry_q;
   logic [63:0] time_q;
 
@@ -65,25 +65,25 @@ module snapshot_writer #(
     end
   end
 
-  logic       host_q;  // the host's request is not served yet
-  logic       mark_q;  // a MARK's
+  logic       host_q;  // a request of the host waits
+  logic       mark_q;  // a request of a MARK waits
   logic [1:0] area_q;
-  logic       odd_q;  // of captures: the upper half of the area
-  logic       again_q;  // of the host's: a snapshot taken anew
+  logic       odd_q;  // of a capture: the upper half of the area
+  logic       again_q;  // of the host's snapshot: it is taken again
   logic       settle_q;  // the clock between the strobe and the first word
   logic       write_q;
   logic [3:0] word_q;
   logic       last_q;  // the last word is on its way into the RAM
-  logic       for_host;  // the snapshot under way
-  logic       begin_first;  // a stop's, its rest's or the probe's
-  logic       begin_capture;  // where these do not begin
-  logic       begin_mark;  // likewise
-  logic       begin_host;  // where none of them begins
+  logic       for_host;  // the snapshot under way is the host's
+  logic       begin_first;  // a snapshot of a stop, its rest or the probe begins
+  logic       begin_capture;  // a snapshot of a capture begins
+  logic       begin_mark;  // a snapshot of a MARK begins, unless begin_first
+  logic       begin_host;  // the host's snapshot begins, unless one of the others does
   logic       breaks;
   logic       capture_q;  // the snapshot under way, or the last one, is a capture's
-  logic       wanted_q;  // its unit has asked for it all the while
-  logic [1:0] unit;  // the first one that asks
-  logic [1:0] unit_q;  // of the capture under way
+  logic       wanted_q;  // the unit of the capture has requested it without a break
+  logic [1:0] unit;  // the first unit that requests
+  logic [1:0] unit_q;  // unit of the capture under way
 
   assign for_host = area_q == SNAP && !rest_o;
   assign begin_first = stop_i || rest_i || probe_i;
@@ -140,7 +140,7 @@ module snapshot_writer #(
     end
   end
 
-  // Whatever breaks in: it counts while words are written alone.
+  // word_q counts only while words are written. An interruption needs no reset here: each snapshot sets word_q first.
   always_ff @(posedge clk_i) begin
     if (settle_q) begin
       word_q <= TIME_LO;

@@ -1,5 +1,5 @@
-// The buttons: feed hold holds the path until cycle start. While the feed hold button is pressed nothing releases it, and
-// a cycle start that is held down releases nothing that comes later.
+// The buttons: feed hold holds the path until cycle start. While the feed hold button is pressed, nothing releases the
+// hold. A cycle start button that is held down does not release a later hold.
 `default_nettype none
 
 module button_hold (
@@ -22,7 +22,7 @@ module button_hold (
     end
   end
 
-  logic unused;  // roles that are no buttons
+  logic unused;  // roles that are not buttons
   assign unused = &{1'b0, roles_i};
 endmodule
 

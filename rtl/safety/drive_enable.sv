@@ -1,33 +1,34 @@
-// The drives' enable and their brake, one sequence for the axes that ENABLE_AXES names:
+// The drives' enable and their brake: one sequence for all axes that ENABLE_AXES names.
 //
-//   OFF      disabled, brake set       -> TORQUE when a path waits for it, or ENABLE orders it, and nothing bars it
-//   TORQUE   enabled, brake set        BRAKE_RELEASE_DELAY
-//   SETTLE   enabled, brake released   ENABLE_DELAY
-//   READY    ticks are taken           until the card has rested for ENABLE_IDLE, the order ends, or a fault bars it
-//   LAST     as SETTLE                 STOP_DELAY
-//   BRAKE    enabled, brake set        BRAKE_SET_DELAY
+//   OFF      disabled, brake set       -> TORQUE when a path waits for it or ENABLE requests it, and no cause bars it
+//   TORQUE   enabled, brake set        for BRAKE_RELEASE_DELAY
+//   SETTLE   enabled, brake released   for ENABLE_DELAY
+//   READY    ticks are taken           until at rest for ENABLE_IDLE, ENABLE is withdrawn, or a cause bars it
+//   LAST     as SETTLE                 for STOP_DELAY
+//   BRAKE    enabled, brake set        for BRAKE_SET_DELAY
 //
-// Outside READY no tick is taken: a path waits at the gate, and nothing of it is lost. READY is left at rest alone, but for
-// the emergency stop, which disables at once in every state. Neither a reset nor a clear enables anything.
+// Outside READY no tick is taken: a path waits at the gate, and nothing of it is lost. READY is left only at rest,
+// except for the emergency stop, which disables at once in every state. Neither a reset nor clearing FAULT enables
+// anything.
 `default_nettype none
 
 module drive_enable #(
     parameter int Axes      = 4,   // 1 to 8
-    parameter int DelayBits = 12,  // a unit of the delays is 2^DelayBits clocks; the map says 12, proofs take fewer
-    parameter int IdleBits  = 20   // and one of ENABLE_IDLE 2^IdleBits
+    parameter int DelayBits = 12,  // delays are in units of 2^DelayBits clocks; the map says 12, proofs take fewer
+    parameter int IdleBits  = 20   // ENABLE_IDLE is in units of 2^IdleBits clocks
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic moves_i,  // a path or a direct move takes ticks
     input wire logic busy_i,  // something runs or is queued, or a pulse is under way
-    input wire logic emergency_i,  // level: the emergency stop
+    input wire logic emergency_i,  // level: emergency stop
     input wire logic [31:0] fault_i,
     output logic enabled_o,
-    output logic released_o,  // the brake is
-    output logic wait_o,  // no tick is taken
-    output logic waiting_o,  // motion waits for it (combinational)
-    output logic [Axes-1:0] disabled_o  // events: the axis loses its place (combinational)
+    output logic released_o,  // the brake is released
+    output logic wait_o,  // no tick may be taken
+    output logic waiting_o,  // motion waits for the enable (combinational)
+    output logic [Axes-1:0] disabled_o  // events: the axis's drive is disabled (combinational)
 );
   localparam int Faults = card_map_pkg::BIT_FAULT_TOOL_SETTER + 1;
   localparam int TimerBits = 16 + IdleBits;
@@ -44,7 +45,7 @@ module drive_enable #(
   state_e                 state_q;
   state_e                 state_d;
   logic   [     Axes-1:0] named_q;
-  logic   [     Axes-1:0] axes_q;  // changes at rest
+  logic   [     Axes-1:0] axes_q;  // changes only at rest
   logic   [     Axes-1:0] axes_d;
   logic                   on_q;
   logic                   manual_q;
@@ -128,7 +129,7 @@ module drive_enable #(
     enabled_o <= state_d != OFF;
     released_o <= state_d == SETTLE || state_d == READY || state_d == LAST;
     axes_q <= axes_d;
-    // From here to the queues is one of the card's longest ways: it begins at a flip-flop.
+    // The path from here to the queues is one of the card's longest, so it begins at a flip-flop.
     wait_o <= axes_d != '0 && state_d != READY;
     if (setting_i[setting_bus_pkg::SET]) begin
       case (setting_bus_pkg::word(
@@ -163,10 +164,10 @@ module drive_enable #(
   end
 
   assign waiting_o  = wait_o && moves_i;
-  // In the clock before OFF; by way of the next state it would be one of the card's longest ways.
+  // In the clock before OFF: derived from the next state, it would be one of the card's longest paths.
   assign disabled_o = state_q != OFF && (emergency_i || (state_q == BRAKE && none_left)) ? axes_q : '0;
 
-  logic unused;  // absent axes and faults
+  logic unused;  // bits of absent axes and faults
   assign unused = &{1'b0, data, fault_i};
 endmodule
 

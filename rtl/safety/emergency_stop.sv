@@ -1,8 +1,10 @@
-// The emergency stop's pin. Its level sets a flip-flop asynchronously, so that a glitch between two clocks is latched and
-// outputs change without a clock; the cause of a stop and FAULT.emergency_stop follow it through a synchroniser.
+// The emergency stop's pin. Its level sets a flip-flop asynchronously, so that a glitch between two clock edges is
+// latched and outputs change without a clock. The cause of a stop and FAULT.emergency_stop follow through a
+// synchroniser.
 //
-// A clear counts when the synchronised pin is inactive and the latch has become the cause: so no press passes without
-// FAULT.emergency_stop, and none that lasts is cleared. A press in the clock of a clear sets the latch again.
+// A clear takes effect only when the synchronised pin is inactive and the latch has become the cause. So no press
+// passes without FAULT.emergency_stop, and a press that lasts is not cleared. A press in the clock of a clear sets the
+// latch again.
 `default_nettype none
 
 module emergency_stop (
@@ -11,8 +13,8 @@ module emergency_stop (
     input wire logic pin_i,  // asynchronous
     input wire logic level_i,  // strap: the level that means stop
     input wire logic clear_i,  // event: a one was written to FAULT.emergency_stop
-    output logic latched_o,  // set without a clock
-    output logic stop_o  // the cause: a level (combinational)
+    output logic latched_o,  // latch of the emergency stop (asynchronous)
+    output logic stop_o  // level: cause of a stop (combinational)
 );
   (* async_reg = "true" *)logic pin_first_q;
   (* async_reg = "true" *)logic pin_second_q;
@@ -33,7 +35,8 @@ module emergency_stop (
   always_ff @(posedge clk_i) begin
     pin_first_q <= pin_i;
     pin_second_q <= pin_first_q;
-    // The level itself, too: then it is no matter whether a simulation sets the latch before the edge or with it.
+    // The pin's level is included, so that it does not matter whether a simulation sets the latch before the edge or
+    // with it.
     latch_first_q <= latched_o || pin_i == level_i;
     latch_second_q <= latch_first_q;
     if (clear || rst_i) begin

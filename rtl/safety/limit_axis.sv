@@ -1,8 +1,8 @@
-// The limits of one axis: whether a step goes into an active switch, and how many more of them the axis may make on the
-// ramp to the stop. A pair of bits is {positive end, negative end}.
+// The limits of one axis: whether a step goes into an active switch, and how many more such steps the axis may make on
+// the ramp to the stop. A pair of bits is {positive end, negative end}.
 //
-// A shared switch serves both ends. It blocks the side from which it was reached: the direction of the last step when it
-// became active. Before the first step since reset it blocks both.
+// A shared switch serves both ends. It blocks one direction: that of the last step when the switch became active.
+// Before the first step since reset it blocks both directions.
 `default_nettype none
 
 module limit_axis #(
@@ -11,19 +11,19 @@ module limit_axis #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
-    input wire logic [1:0] limit_i,  // levels of the roles
+    input wire logic [1:0] limit_i,  // levels of the limit roles
     input wire logic step_i,  // a step on the path
-    input wire logic dir_i,  // of the last step, this one included: 1 backwards, 0 forwards
+    input wire logic dir_i,  // direction of the last step, including step_i: 1 backwards, 0 forwards
     input wire logic shared_i,
-    input wire logic any_step_i,  // a step of either direction counts as into any_limit_i
+    input wire logic any_step_i,  // each step, in either direction, counts as a step into a limit while any_limit_i
     input wire logic any_limit_i,
     input wire logic any_into_i,  // event: some axis with any_step_i makes such a step
-    input wire logic ramp_i,  // the overtravel counts
+    input wire logic ramp_i,  // the stop is under way: overtravel counts
     input wire logic clear_i,  // event: FAULT.limit is cleared
-    output logic [1:0] active_o,  // combinational; overridden ones are not
+    output logic [1:0] active_o,  // combinational; without overridden limits
     output logic into_o,  // event
-    output logic beyond_o,  // with it: no overtravel is left
-    output logic [1:0] caused_o  // limits that brought FAULT.limit since it was cleared
+    output logic beyond_o,  // with into_o: no overtravel is left
+    output logic [1:0] caused_o  // limits that caused FAULT.limit since it was cleared
 );
   localparam logic [11:0] OVERTRAVEL = card_map_pkg::ADDR_OVERTRAVEL + 12'(Axis * card_map_pkg::STRIDE_OVERTRAVEL);
 
@@ -32,8 +32,8 @@ module limit_axis #(
   logic [ 1:0] level;
   logic [ 1:0] blocked;
   logic        pressed;
-  logic [ 1:0] side;  // to which the last step went
-  logic [ 1:0] reached;  // whence a shared switch was reached
+  logic [ 1:0] side;  // direction of the last step
+  logic [ 1:0] reached;  // directions that a shared switch blocks
   logic        into;
   logic [ 1:0] caused;
   logic [15:0] left;
@@ -41,7 +41,7 @@ module limit_axis #(
   logic [15:0] one_less;
   logic        beyond;
   logic [ 1:0] overridden_q;
-  logic        moved_q;  // there was a step since reset
+  logic        moved_q;  // there has been a step since reset
   logic        was_pressed_q;
   logic [ 1:0] reached_q;
   logic [15:0] overtravel_q;
@@ -57,11 +57,11 @@ module limit_axis #(
   assign reached = was_pressed_q ? reached_q : (moved_q || step_i) ? side : 2'b11;
   assign blocked = any_step_i ? {2{any_limit_i}} : shared_i ? active_o & reached : active_o;
   assign into = step_i && (blocked & side) != 2'b00;
-  // An axis under the rule of any step names its own limits, whoever made the step.
+  // An axis with any_step_i names its own active limits, whichever axis made the step.
   assign caused = any_step_i ? (any_into_i ? active_o : 2'b00) : into ? side : 2'b00;
-  // The steps that are left count from the first one into a limit on.
+  // The overtravel counts from the first step into a limit on.
   assign left = ramp_i ? left_q : overtravel_q;
-  // One subtraction: its borrow is the comparison with 0. It does not wait for whether the step counts.
+  // One subtraction: its borrow is the comparison with 0. It does not depend on whether the step counts.
   assign {none_left, one_less} = {1'b0, left} - 17'd1;
   assign beyond = into && none_left;
 
@@ -75,7 +75,7 @@ module limit_axis #(
     into_o   <= into;
     beyond_o <= beyond;
     caused_q <= caused;
-    // With FAULT, which takes into_o.
+    // In the same clock as FAULT, which is set by into_o.
     caused_o <= (clear_i ? 2'b00 : caused_o) | caused_q;
     if (rst_i) begin
       left_q <= '0;

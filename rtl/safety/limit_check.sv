@@ -1,5 +1,5 @@
-// Stops that the machine's inputs cause: limits, drive faults, the probe outside probing, the tool setter. It names
-// causes, one clock after they arise; stop_control decides.
+// Causes of a stop that come from the machine's inputs: limits, drive faults, the probe outside probing, the tool
+// setter. Each cause is reported one clock after it arises; stop_control decides what to do.
 `default_nettype none
 
 module limit_check #(
@@ -10,10 +10,10 @@ module limit_check #(
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
     input wire logic [Axes-1:0] step_i,  // steps on the path
-    input wire logic [Axes-1:0] dir_i,  // of each axis's last one: 1 backwards, 0 forwards
+    input wire logic [Axes-1:0] dir_i,  // direction of each axis's last step: 1 backwards, 0 forwards
     input wire logic runs_i,  // a path or a direct move is under way
     input wire logic probing_i,
-    input wire logic stopping_i,  // a fault's ramp
+    input wire logic stopping_i,  // a fault's stop is under way
     input wire logic [31:0] clear_i,  // ones written to FAULT
     output logic [stop_causes_pkg::WIDTH-1:0] causes_o,
     output logic [23:0] state_o  // the register LIMIT_STATE
@@ -28,19 +28,19 @@ module limit_check #(
   logic [Axes-1:0] shared_q;
   logic            probe_counts_q;
   logic            tool_setter_counts_q;
-  logic [     1:0] were_active_q;  // tool setter, probe
+  logic [     1:0] were_active_q;  // levels one clock ago: tool setter, probe
   logic            probed_q;
   logic            set_tool_q;
   logic [Axes-1:0] drives_q;
   logic [Axes-1:0] faulted_q;
   logic            ramp;
-  logic [Axes-1:0] limited;  // has an active limit
+  logic [Axes-1:0] limited;  // axes with an active limit
   logic [Axes-1:0] into;
   logic [Axes-1:0] beyond;
   logic            any_limit;
   logic            any_into;
-  logic [Axes-1:0] minus;  // limits that brought FAULT.limit
-  logic [Axes-1:0] plus;
+  logic [Axes-1:0] minus;  // axes whose negative limit caused FAULT.limit
+  logic [Axes-1:0] plus;  // axes whose positive limit caused FAULT.limit
 
   assign data = setting_bus_pkg::data(setting_i);
   assign clears_limit = clear_i[card_map_pkg::BIT_FAULT_LIMIT];
@@ -55,7 +55,7 @@ module limit_check #(
   assign causes_o[stop_causes_pkg::DRIVE_FAULT] = drives_q != '0;
   assign causes_o[stop_causes_pkg::PROBE] = probed_q;
   assign causes_o[stop_causes_pkg::TOOL_SETTER] = set_tool_q;
-  // The ramp shows two clocks after the step that began it.
+  // stopping_i shows a ramp two clocks after the step that began it; `into` covers the clock before.
   assign ramp = stopping_i || into != '0;
   assign state_o[7:0] = 8'(minus);
   assign state_o[15:8] = 8'(plus);
@@ -113,7 +113,7 @@ module limit_check #(
     end
   end
 
-  logic unused;  // absent axes; the buttons
+  logic unused;  // bits of absent axes; the buttons
   assign unused = &{1'b0, data, limit_minus, limit_plus, roles_i, clear_i};
 endmodule
 

@@ -1,14 +1,15 @@
-// Which axes stand where the host believes, POSITION_VALID, and which of them were homed, HOMED: the register PLACE. The
-// host writes both by SET_PLACE; the card clears them.
+// The register PLACE: POSITION_VALID says which axes are where the host believes, HOMED says which of them were homed.
+// The host writes both by SET_PLACE; the card clears them.
 //
-// An axis loses both at a fault of its drive; at a cut while it moves, and as its drive is disabled, unless KEEPS_PLACE
-// names it. It moves from its first step on until neither a piece nor a direct move is under way; at the ratio 0 it
-// stands. So the cut that follows a hold or the end of a ramp takes nothing away.
+// A fault of its drive clears both bits of an axis. A cut while the axis moves, and the disabling of its drive, clear
+// them too, unless KEEPS_PLACE names the axis. An axis moves from its first step until neither a piece nor a direct
+// move is under way; while the ratio is 0 it is at rest. So the cut that follows a hold, or the end of a ramp, clears
+// nothing.
 //
-// An event is judged a clock later, from flip-flops: it comes through the emergency stop and the sequence of the drives,
-// which is one of the card's longest ways. So a loss wins over a write in its clock and over one in the next: the host
-// wrote before it could know. KEEPS_PLACE counts for an event in the clock in which it is written. A write in a later
-// clock counts, so the host writes while the axes stand, when no cut takes anything away.
+// An event is judged one clock later, from flip-flops, because its path through the emergency stop and the sequence of
+// the drives is one of the card's longest. So a loss has priority over a write in its clock and in the next clock: the
+// host could not know of the loss when it wrote. KEEPS_PLACE counts for an event in the clock in which it is written. A
+// write in a later clock counts; so the host writes while the axes are at rest, when no cut clears anything.
 `default_nettype none
 
 module machine_place #(
@@ -28,10 +29,10 @@ module machine_place #(
   logic [Axes-1:0] valid_q;
   logic [Axes-1:0] homed_q;
   logic [Axes-1:0] keeps_q;
-  logic [Axes-1:0] moved_q;  // a step since the motion under way began
+  logic [Axes-1:0] moved_q;  // axes that have stepped since the motion under way began
   logic [Axes-1:0] drive_fault_q;
   logic [Axes-1:0] disabled_q;
-  logic            cut_q;  // at a ratio that was not 0
+  logic            cut_q;  // a cut came while the ratio was not 0
   logic [Axes-1:0] lost;
   logic [Axes-1:0] written;
   logic [    31:0] data;
@@ -60,7 +61,7 @@ module machine_place #(
     end
   end
 
-  logic unused;  // absent axes
+  logic unused;  // bits of absent axes
   assign unused = &{1'b0, data};
 endmodule
 

@@ -1,12 +1,12 @@
-// Soft limits: a pulse that leaves an axis beyond an end of its range, further out than before it, is a cause of a stop.
-// The host refuses such moves before they start; this is the last guard.
+// Soft limits: a pulse is a cause of a stop if it leaves an axis beyond an end of its range, further out than before.
+// The host refuses such moves before they start; this block is the last guard.
 //
-// One axis is looked at in each clock: its end on the side of its last pulse comes from a block RAM with a register
-// behind it, and is compared with its position. FAULT shows a pulse 3 to Round + 3 clocks after the position. None is
+// One axis is examined per clock. Its end on the side of its last pulse comes from a block RAM with a register behind
+// it, and is compared with its position. FAULT shows a pulse 3 to Round + 3 clocks after the position. No pulse is
 // missed: a pulse in the other direction comes 13 clocks later at the earliest.
 //
-// Positions count modulo 2^32, and so does the difference to an end. It is right while the axis stands less than 2^31
-// pulses away from that end.
+// Positions count modulo 2^32, and so does the difference to an end. The comparison is right while the axis is less
+// than 2^31 pulses away from that end.
 `default_nettype none
 
 module soft_limits #(
@@ -18,23 +18,23 @@ module soft_limits #(
     input wire logic [axis_observe_pkg::WIDTH*Axes-1:0] axes_i,
     input wire logic clear_i,  // event: FAULT.soft_limit is cleared
     output logic cause_o,  // event
-    output logic [3:0] state_o  // LIMIT_STATE: axis; 1 at its positive end
+    output logic [3:0] state_o  // in LIMIT_STATE: {1 for the positive end, number of the axis}
 );
-  localparam int Bits = Axes > 4 ? 3 : 2;  // of an axis's number
-  localparam int Round = 1 << Bits;  // absent axes have their clocks, too
+  localparam int Bits = Axes > 4 ? 3 : 2;  // bits of an axis's number
+  localparam int Round = 1 << Bits;  // clocks of a round; absent axes have theirs, too
   localparam logic [11:0] SOFT_MINUS = card_map_pkg::ADDR_SOFT_MINUS;
 
   logic [    31:0] data;
   logic [     9:0] word;
-  logic            sets;  // an end of an axis
+  logic            sets;  // an end of an axis is written
   logic [Bits-1:0] set_axis;
   logic [Axes-1:0] has_q;
-  logic [Axes-1:0] counts;  // a pulse begins: the position has it in the next clock
+  logic [Axes-1:0] counts;  // a pulse begins; the position includes it from the next clock on
   logic [Axes-1:0] counts_back;
-  logic [Axes-1:0] moved_q;  // since it was looked at
-  logic [Axes-1:0] back_q;  // its last pulse went backwards
+  logic [Axes-1:0] moved_q;  // the axis has moved since it was last examined
+  logic [Axes-1:0] back_q;  // the axis's last pulse went backwards
   logic [  Bits:0] reads_q;  // axis whose end is read; the highest bit counts rounds
-  logic            clearing_q;  // after reset the ends are 0
+  logic            clearing_q;  // after a reset the ends are set to 0
   logic [    31:0] end_read_q;
   logic            back_read_q;
   logic [Bits-1:0] looked_at;  // the axis whose end was read
@@ -44,10 +44,10 @@ module soft_limits #(
   logic            back_judged_q;
   logic [Bits-1:0] axis_judged_q;
   logic            judges_q;
-  logic [    32:0] past;  // the end; the lowest bit makes the carry
+  logic [    32:0] past;  // position less end; the lowest bit makes the carry
   logic            cause;
-  logic [     3:0] place_q;  // of the cause
-  logic            named_q;  // since FAULT.soft_limit was cleared
+  logic [     3:0] place_q;  // end and axis of the cause
+  logic            named_q;  // there was a cause since FAULT.soft_limit was cleared
 
   assign data = setting_bus_pkg::data(setting_i);
   assign word = setting_bus_pkg::word(setting_i);
@@ -82,9 +82,9 @@ module soft_limits #(
     end
   end
 
-  // The other end was read for an axis that has turned meanwhile: it waits for the next round.
+  // If the axis has turned since its end was read, that was the other end: the axis waits for the next round.
   assign judges = moved[looked_at] && back[looked_at] == back_read_q;
-  // One adder: backwards position - end, negative where it is beyond; forwards position - end - 1, negative elsewhere.
+  // One adder. Backwards: position - end, negative if beyond. Forwards: position - end - 1, negative if not beyond.
   assign past   = {position_q, back_judged_q} + {~end_q, back_judged_q};
   assign cause  = judges_q && past[32] == back_judged_q;
 
@@ -99,7 +99,7 @@ module soft_limits #(
     judges_q <= judges;
     cause_o <= cause;
     place_q <= {!back_judged_q, 3'(axis_judged_q)};
-    // With FAULT, which takes cause_o.
+    // In the same clock as FAULT, which is set by cause_o.
     named_q <= cause_o || (named_q && !clear_i);
     if (cause_o && (clear_i || !named_q)) state_o <= place_q;
     else if (clear_i) state_o <= '0;
@@ -115,7 +115,7 @@ module soft_limits #(
   end
 
   // One write port and one read port, with a register behind it.
-  logic [31:0] ends[0:2*Round-1];  // of each axis the negative one, then the positive one
+  logic [31:0] ends[0:2*Round-1];  // for each axis the negative end, then the positive end
 
   always_ff @(posedge clk_i) begin
     if (sets || clearing_q) ends[clearing_q?reads_q : {set_axis, word[0]}] <= clearing_q ? '0 : data;
@@ -123,7 +123,7 @@ module soft_limits #(
     end_q <= end_read_q;
   end
 
-  logic unused;  // absent axes, and what else the bundles have
+  logic unused;  // bits of absent axes, and fields that are not used here
   assign unused = &{1'b0, word, past[31:0], axes_i};
 endmodule
 

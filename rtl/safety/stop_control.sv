@@ -1,20 +1,20 @@
-// Everything that stops the card: gathers the faults, holds the time base, cuts.
+// All stops of the card: collects the faults, holds the time base, cuts.
 //
-// A fault stops at once, or, where its reaction says so, after the time base has come to rest. Either way the tick gate is
-// shut then, and the cut waits until the ticks in flight have made their steps and the last pulse has come out: so the
-// snapshot REST, strobed in the clock of the cut, has a tick and positions that agree. The cut leaves nothing that could
-// move, so clearing FAULT never starts motion. An abort cuts at once, unless a fault is on its way to a cut already.
+// A fault stops at once or, if its reaction says so, after the time base has come to rest. In both cases the tick gate
+// is shut then, and the cut waits until the ticks in flight have made their steps and the last pulse has ended. So the
+// snapshot REST, strobed in the clock of the cut, has a tick and positions that agree. The cut leaves nothing that
+// could move, so clearing FAULT never starts motion. An abort cuts at once, unless a fault's stop is under way already.
 //
-// The wait is bounded: with the gate shut path_tick_gate has seven ticks at most, each step takes its engine at most 17
-// clocks, and a shaper holds four steps beside the pulse under way.
+// The wait is bounded: with the gate shut, path_tick_gate has at most seven ticks, each step takes its engine at most
+// 17 clocks, and a shaper holds four steps besides the pulse under way.
 //
-// A HOLD waits for the end of the fixed pieces that are under way. One that finds nothing moving, or the time base at
-// rest, takes at once and stays until it is taken back: no fixed piece that is sent meanwhile starts motion.
+// A HOLD waits for the end of the fixed pieces that are under way. If nothing moves, or the time base is at rest, it
+// takes effect at once and stays until it is withdrawn: a fixed piece that is sent in the meantime starts no motion.
 `default_nettype none
 
 module stop_control #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -22,39 +22,39 @@ module stop_control #(
     input wire logic [Axes-1:0] step_fault_i,
     input wire logic mismatch_i,
     input wire logic incomplete_i,
-    input wire logic missing_i,  // position streaming
-    input wire logic expired_i,  // the watchdog has expired: a level
-    input wire logic link_lost_i,  // likewise
-    input wire logic emergency_i,  // the emergency stop: a level
+    input wire logic missing_i,  // event: position streaming lacks its next period
+    input wire logic expired_i,  // level: the watchdog has expired
+    input wire logic link_lost_i,  // level: the link is lost
+    input wire logic emergency_i,  // level: emergency stop
     input wire logic [stop_causes_pkg::WIDTH-1:0] causes_i,  // from the machine's inputs
-    input wire logic soft_limit_i,  // event: a pulse beyond one
+    input wire logic soft_limit_i,  // event: a pulse beyond a soft limit
     input wire logic abort_i,
     input wire logic [31:0] clear_i,  // ones written to FAULT
     input wire logic at_rest_i,  // the ratio is 0
     input wire logic moving_i,  // pieces are giving ticks
-    input wire logic fixed_i,  // the present one is fixed
-    input wire logic underrun_i,  // what is queued ends: neither a fault nor a cut
-    input wire logic probe_i,  // a probe has tripped: likewise
-    input wire logic button_i,  // the feed hold button holds, as HOLD does
-    // what still moves
+    input wire logic fixed_i,  // the present piece is fixed
+    input wire logic underrun_i,  // under-run hold: neither a fault nor a cut
+    input wire logic probe_i,  // a probe has tripped: neither a fault nor a cut
+    input wire logic button_i,  // the feed hold button holds, like HOLD
+    // motion that is still under way
     input wire logic take_i,  // a tick is taken in this clock (combinational)
     input wire logic swap_i,  // a path begins
-    input wire logic quiet_i,  // no path tick waits or is on its way to an engine, none makes a step
+    input wire logic quiet_i,  // no path tick waits or is on its way to an engine, and no engine is making a step
     input wire logic pulses_i,  // an axis is busy
     input wire logic busy_i,  // something runs or is queued
     output logic [31:0] fault_o,
     output logic hold_o,  // the time base slows down to rest
     output logic cut_o,
-    output logic stop_o,  // the first cause of a stop
-    output logic rest_o,  // event: the snapshot REST is wanted (combinational); a cut follows in the next clock
-    output logic caused_o,  // a cause comes, or the card is not in RUN (combinational)
-    output logic stopping_o,  // on the way to the cut (combinational)
-    output logic closing_o,  // its last part: the gate is shut (combinational)
-    output logic shut_o,  // no tick is taken
+    output logic stop_o,  // event: a stop begins
+    output logic rest_o,  // event (combinational): requests the snapshot REST; a cut follows in the next clock
+    output logic caused_o,  // a cause of a stop is present, or the card is not in RUN (combinational)
+    output logic stopping_o,  // a stop is under way, a cut follows (combinational)
+    output logic closing_o,  // last part of a stop: the gate is shut (combinational)
+    output logic shut_o,  // no tick may be taken
     output logic settled_o,  // STATUS.settled (combinational)
-    output logic closed_o  // no command and no START is taken
+    output logic closed_o  // no command and no START is accepted
 );
-  // The upper bit shuts the gate.
+  // The upper bit shuts the tick gate.
   typedef enum logic [1:0] {
     RUN,
     RAMP,
@@ -62,15 +62,15 @@ module stop_control #(
     STOPPED
   } state_e;
 
-  // Clocks in which nothing moved. A tick taken is at most 10 clocks on its way to its axis's busy flag; the snapshot STOP
-  // takes 20 clocks from the cause on, which REST must not break into.
+  // Clocks without motion until the card is settled. A tick takes at most 10 clocks to its axis's busy flag. The
+  // snapshot STOP takes 20 clocks from the cause on, and REST must not interrupt it.
   localparam logic [4:0] SETTLED = 5'd31;
 
   localparam int Faults = card_map_pkg::BIT_FAULT_TOOL_SETTER + 1;
   localparam logic [Faults-1:0] OF_INPUTS = Faults'(1) << card_map_pkg::BIT_FAULT_LIMIT |
       Faults'(1) << card_map_pkg::BIT_FAULT_DRIVE_FAULT | Faults'(1) << card_map_pkg::BIT_FAULT_PROBE |
       Faults'(1) << card_map_pkg::BIT_FAULT_TOOL_SETTER;
-  // The causes that can arise here, and those that a reaction may be chosen for: no flip-flops for the others.
+  // The causes that can arise in this card, and those whose reaction can be chosen. The others get no flip-flops.
   localparam logic [Faults-1:0] BUILT = (Faults'(1) << Axes) - Faults'(1) |
       Faults'(1) << card_map_pkg::BIT_FAULT_TICK_MISMATCH | Faults'(1) << card_map_pkg::BIT_FAULT_PATH_INCOMPLETE |
       Faults'(Engines[card_map_pkg::ENGINE_STREAMING]) << card_map_pkg::BIT_FAULT_MISSING_PERIOD |
@@ -85,7 +85,7 @@ module stop_control #(
   logic   [Faults-1:0] fault_q;
   logic   [Faults-1:0] cause;
   logic                hold_q;
-  logic                hold_latched_q;  // the hold stays whatever begins
+  logic                hold_latched_q;  // the hold stays, even when a fixed piece begins
   logic                asked;
   logic                stays;
   logic   [Faults-1:0] ramped_q;  // causes whose reaction is a ramp
@@ -130,7 +130,7 @@ module stop_control #(
     endcase
   end
 
-  // From the first clock out of RUN on the count begins anew: stop_o.
+  // stop_o restarts the count in the first clock outside RUN.
   assign still = (at_rest_i || shut_o) && quiet_i && !pulses_i && !take_i && !stop_o;
   assign settled_o = settle_q == SETTLED && !swap_i;
   assign finished = closing_o && settle_q == SETTLED && !stop_o;
@@ -146,7 +146,7 @@ module stop_control #(
     cut_o <= finished || (abort_i && (state_q == STOPPED || (state_q == RUN && !any)));
     stop_o <= state_q == RUN && state_d != RUN;
     hold_latched_q <= stays;
-    // The ratio does not leave 0 between the end of a ramp and the cut.
+    // The ratio stays 0 from the end of a ramp to the cut.
     hold_o <= (asked && (stays || !fixed_i)) || underrun_i || probe_i || state_q == RAMP || (closing_o && at_rest_i);
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
@@ -168,7 +168,7 @@ module stop_control #(
   assign closing_o = state_q == CLOSING;
   assign shut_o = state_q[1];
 
-  logic unused;  // absent axes and faults that are not built
+  logic unused;  // bits of absent axes, and of faults that are not built in
   assign unused = &{1'b0, data[31:Faults], clear_i};
 endmodule
 

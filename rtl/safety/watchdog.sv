@@ -1,9 +1,9 @@
-// The watchdog over the host. A write to WATCHDOG starts its time anew; when it has passed without another write,
-// expired_o rises and stays until the next one. A time of 0 never passes.
+// The watchdog over the host. A write to WATCHDOG restarts its time. If the time passes without another write,
+// expired_o rises and stays high until the next write. A time of 0 never passes.
 `default_nettype none
 
 module watchdog #(
-    parameter int UnitBits = 16  // a unit of WATCHDOG is 2^UnitBits clocks; the map says 16, proofs take fewer
+    parameter int UnitBits = 16  // WATCHDOG is in units of 2^UnitBits clocks; the map says 16, proofs take fewer
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -11,7 +11,7 @@ module watchdog #(
     output logic running_o,
     output logic expired_o
 );
-  logic [15+UnitBits:0] left_q;  // clocks: 16 bits of units
+  logic [15+UnitBits:0] left_q;  // clocks left; the upper 16 bits are units
   logic [31:0] data;
   logic [15+UnitBits:0] next;
   logic none_left;

@@ -1,21 +1,22 @@
-// The feed generator: rate, acceleration and jerk of one profile piece, and a 48-bit phase whose carry is the tick.
+// The feed generator: rate, acceleration and jerk of one feed piece, and a 48-bit phase whose carry is the tick.
 //
-// Enabled clocks 32k..32k+31 of a piece add clamp(R_k) to the phase; R_0 is the rate itself, unclamped.
-// R and A are added in nibbles, 17 clocks for 68 bits, right after R_k was taken, so R_(k+1) and its comparison with
-// the floor are ready 20 clocks later, 12 before the earliest need. A swap may come at any clock, also amid an update.
-// A and J have no shadow. Where no piece runs they come before the swap (clear_i is high then); else after it, and R_1 is
-// made when the last halfword of J is there: 14 clocks after the swap at the latest, or the 32nd enabled clock could be
-// missed.
+// Enabled clocks 32k..32k+31 of a piece add clamp(R_k) to the phase; R_0 is the rate itself, unclamped. R and A are
+// added in nibbles, in 17 clocks for 68 bits, right after R_k was taken. So R_(k+1) and its comparison with the floor
+// are ready 20 clocks later, 12 before the earliest need. A swap may come at any clock, also during an update. A and J
+// have no shadow. If no piece runs, they arrive before the swap (clear_i is high then). Otherwise they arrive after it,
+// and R_1 is computed when the last halfword of J is there. That is 14 clocks after the swap at the latest; any later,
+// the 32nd enabled clock could be missed.
 //
-// Frozen, the slope stays as it is until the next swap.
+// While frozen, the slope stays as it is until the next swap.
 //
-// Once R lies outside -2 .. 2 it stays as it is to the end of the piece, at the floor or at 1: before that A lies within
-// +-4.5 (the difference of two Rs, and a J of half), so that neither has ever left the +-8 of its bits.
+// Once R is outside -2 .. 2, it keeps its value to the end of the piece, and the slope is the floor or 1. Before that,
+// A is within +-4.5 (the difference of two values of R, plus a J of at most one half). So neither ever leaves the +-8
+// of its bits.
 //
-// The phase is 16 + 32 bits with a registered carry: everything of the upper 32 bits (its part of R, the floor, the
-// slope) is taken one clock after the lower part. So the shadow must hold in the clock of a swap and the next. Swaps are
-// 16 clocks apart or more (the decoder takes that long to load a piece); nothing is enabled before the first one.
-// An enable at c gives its tick at c+3; the rate shows with the same delay.
+// The phase has 16 + 32 bits with a registered carry. All values for the upper 32 bits (their part of R, the floor, the
+// slope) are taken one clock after those for the lower part. So the shadow must keep its values in the clock of a swap
+// and in the next one. Swaps are at least 16 clocks apart (the decoder takes that long to load a piece); nothing is
+// enabled before the first one. An enable at c gives its tick at c+3; the rate is shown with the same delay.
 `default_nettype none
 
 module feed_generator (
@@ -26,7 +27,7 @@ module feed_generator (
     input wire logic freeze_i,
     input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
     input wire logic swap_i,
-    input wire logic [31:0] left_i,  // what the snapshot REST has in the rate's place
+    input wire logic [31:0] left_i,  // value of the snapshot REST in place of the rate
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
     output logic tick_o,
@@ -45,7 +46,7 @@ module feed_generator (
   assign load_acceleration = feed_load_pkg::to(load_i, load_target_pkg::FEED_ACCELERATION);
   assign load_jerk = feed_load_pkg::to(load_i, load_target_pkg::FEED_JERK);
 
-  // The next piece's first slope and floor.
+  // First slope and floor of the next piece.
   logic [63:0] next_rate_q;
   logic [31:0] next_floor_q;
   always_ff @(posedge clk_i) begin
@@ -53,7 +54,7 @@ module feed_generator (
     if (load_floor) next_floor_q <= {word, next_floor_q[31:16]};
   end
 
-  // Enabled clocks of the piece, modulo 32, and the moments at which the two parts of the slope are taken from R.
+  // Enabled clocks of the piece, modulo 32, and the clocks in which the two parts of the slope are taken from R.
   logic [4:0] count_q;
   logic swap_q, load_low_q, load_high_q;
   always_ff @(posedge clk_i) begin
@@ -64,13 +65,13 @@ module feed_generator (
     load_high_q <= load_low_q && !rst_i;
   end
 
-  // Steps of an update: words 0..16 are added at steps 0..16; at steps 9..16 the words 8..15, which hold bits 32..63
-  // of the new R, stand at its upper end and are compared with the floor; then the sign and overflow are judged.
+  // Steps of an update: words 0..16 are added at steps 0..16. At steps 9..16 the words 8..15, which hold bits 32..63 of
+  // the new R, are at its upper end and are compared with the floor. Then the sign and overflow are judged.
   logic [4:0] step_q;
   logic rotate_q, compare_q, judge_q;
-  logic waits_q;  // for acceleration and jerk
-  logic away_q;  // R lies outside -2 .. 2
-  logic primed_q;  // the next piece has them
+  logic waits_q;  // waits for acceleration and jerk
+  logic away_q;  // R is outside -2 .. 2
+  logic primed_q;  // acceleration and jerk of the next piece are loaded
   logic load_jerk_q;
   logic loaded;
   logic keep;
@@ -101,7 +102,7 @@ module feed_generator (
     if (rst_i) rotate_q <= 1'b0;
   end
 
-  // Each is an upper and a lower part that shift as one.
+  // Each value is an upper and a lower part that shift as one.
   logic [Width-33:0] rate_high_q;
   logic [31:0] rate_low_q;
   logic [Width-65:0] acceleration_top_q, jerk_top_q;
@@ -134,7 +135,7 @@ module feed_generator (
       else jerk_q <= {word, jerk_q[63:16]};
     end
 
-    // Eight nibbles: after the comparison the floor is back in its place.
+    // Eight nibbles: after the comparison the floor is back in its original position.
     if (compare_q) begin
       difference = {1'b0, rate_high_q[Width-33-:Word]} - {1'b0, floor_q[Word-1:0]} - {4'd0, borrow_q};
       borrow_q <= difference[Word];
@@ -148,7 +149,7 @@ module feed_generator (
     end
   end
 
-  // Where R lies: below the floor, or at 1 or above. Both are 0 after a swap, so the first slope is not clamped.
+  // Range of R: below the floor, or at 1 or above. Both are 0 after a swap, so the first slope is not clamped.
   logic below_q, above_q, below_high_q, above_high_q;
   always_ff @(posedge clk_i) begin : p_judge
     logic negative;

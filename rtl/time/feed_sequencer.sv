@@ -1,15 +1,15 @@
 // Runs one feed piece after the other; the next one is swapped in at the last tick of the present one.
 //
-// In position streaming a piece with none behind it is spent after its ticks, but goes on at its rate while a path takes
-// ticks, until the next one is decoded.
+// In position streaming a piece without a successor is spent after its ticks, but continues at its rate while a path
+// takes ticks, until the next piece is decoded.
 //
-// The ticks of a silent piece make no steps. The silence lasts until the engines have finished the last of these ticks and
-// its steps have come to the axes' gate; a piece that is not silent begins no earlier. In position streaming a silent
-// piece does not go on.
+// The ticks of a silent piece make no steps. The silence lasts until the engines have finished the last of these ticks
+// and its steps have reached the axes' gate; a piece that is not silent begins no earlier. In position streaming a
+// silent piece does not continue after its ticks.
 `default_nettype none
 
 module feed_sequencer #(
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -20,23 +20,23 @@ module feed_sequencer #(
     output logic read_o,
     // ticks
     input wire logic take_i,
-    input wire logic wait_i,  // no piece begins
-    input wire logic finished_i,  // by the engines: every tick given
+    input wire logic wait_i,  // no piece may begin
+    input wire logic finished_i,  // the engines have finished every tick given
     input wire logic [path_pkg::WIDTH-1:0] path_i,
     output logic at_barrier_o,
     output logic runs_o,  // a piece gives ticks, or a decoded one waits (combinational)
     output logic active_o,  // a piece gives ticks
-    output logic decoded_o,  // a piece waits (combinational)
-    output logic spent_o,  // beyond its own
-    output logic moving_o,  // and has, or the one before it in one go
-    output logic [1:0] class_o,  // of the piece that was swapped in last
-    output logic [1:0] slew_shift_o,  // in that piece SLEW is doubled so often, with classes
-    output logic silent_o,  // that piece's ticks make no steps
-    output logic idle_o,  // nothing read or decoded
+    output logic decoded_o,  // a decoded piece waits (combinational)
+    output logic spent_o,  // the piece runs on beyond its own ticks
+    output logic moving_o,  // the piece has given a tick, or directly follows one that has
+    output logic [1:0] class_o,  // class of the piece that was swapped in last
+    output logic [1:0] slew_shift_o,  // doublings of SLEW in that piece, with classes
+    output logic silent_o,  // the ticks of that piece make no steps
+    output logic idle_o,  // nothing is read or decoded
     // feed generator
     output logic swap_o,
     output logic [feed_load_pkg::WIDTH-1:0] load_o,
-    // what began
+    // number of commands begun
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
     output logic [31:0] begun_o
@@ -45,7 +45,7 @@ module feed_sequencer #(
   logic [1:0] piece_class;
   logic piece_silent;
   logic [1:0] piece_slew_shift;
-  logic sounds;  // the piece decoded must wait for the end of the silence
+  logic sounds;  // the decoded piece must wait for the end of the silence
   logic is_barrier;
   logic is_probe_end;
   logic dropped;
@@ -103,7 +103,7 @@ module feed_sequencer #(
       .last_o (last)
   );
 
-  // A barrier that had begun has counted.
+  // A barrier that has begun is counted already.
   logic barrier_under_way;
   assign barrier_under_way = path_i[path_pkg::BARRIER_COUNTS] || path_i[path_pkg::BARRIER_DONE];
 
@@ -128,8 +128,8 @@ module feed_sequencer #(
     else if (take_i || spent_o) moving_o <= active_o && (swap || goes_on || !(ending || spent_o));
   end
 
-  // A step of lines comes to the axes' gate 10 clocks after its tick is taken, an engine's 3 clocks after finished_i rises,
-  // which falls 2 clocks after a take.
+  // A step of lines reaches the axes' gate 10 clocks after its tick is taken. A step of an engine reaches it 3 clocks
+  // after finished_i rises; finished_i falls 2 clocks after a tick is taken.
   logic [3:0] settle_q;
   always_ff @(posedge clk_i) begin
     settle_q <= silent_o && !active_o && finished_i && !rst_i ? settle_q + 4'd1 : 4'd0;
@@ -138,7 +138,7 @@ module feed_sequencer #(
     else if (settle_q == 4'd15) silent_o <= 1'b0;
   end
 
-  // A direct move has no pieces: it runs as feed and by SLEW alone, and so does what comes after a cut.
+  // A direct move has no pieces: it runs in the class feed with SLEW itself, and so does everything after a cut.
   if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
     always_ff @(posedge clk_i) begin
       if (rst_i || cut_i || halt || path_i[path_pkg::DIRECT]) begin
@@ -157,7 +157,7 @@ module feed_sequencer #(
     assign unused = &{1'b0, piece_class, piece_slew_shift};
   end
 
-  logic unused_path;  // what concerns gate and stops
+  logic unused_path;  // fields for gate and stops
   assign unused_path = &{1'b0, path_i};
 endmodule
 

@@ -1,12 +1,12 @@
-// Counts the feed ticks that are queued, for paths and for pieces, and compares both with a limit.
+// Counts the feed ticks that are queued, for paths and for pieces, and compares both counts with a limit.
 //
-// 56 bits each: no queue holds 2^14 commands, none of them has more than 2^40 - 1 ticks. Four words of 14 bits go round,
-// one a clock, in passes of four clocks that begin with word_i = 0. A pass takes away the ticks taken before it, or adds
-// the count of a command that has arrived: so what the counters say is at most 12 clocks old. A command has passed long
-// before the count of the next one comes (a word of the stream takes longer than a pass).
+// The counters have 56 bits: no queue holds 2^14 commands, and no command has more than 2^40 - 1 ticks. Four words of
+// 14 bits rotate, one per clock, in passes of four clocks that begin with word_i = 0. A pass subtracts the ticks taken
+// before it, or adds the count of a command that has arrived. So the counters are at most 12 clocks old. The pass of a
+// command is over long before the count of the next one arrives, since a word of the stream takes longer than a pass.
 //
-// The counters begin at -Reserve instead of 0, so that `count <= limit` says `queued <= limit + Reserve`.
-// The limit is compared with what the pass of the clock before made: word 0 in the clock with word_i = 1.
+// The counters begin at -Reserve instead of 0, so that `count <= limit` means `queued <= limit + Reserve`. The limit is
+// compared with the result of the pass, one clock later: word 0 in the clock with word_i = 1.
 `default_nettype none
 
 module queued_ticks #(
@@ -15,16 +15,16 @@ module queued_ticks #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
-    input wire logic forget_i,  // nothing counts as queued; what is on its way in goes on
+    input wire logic forget_i,  // nothing counts as queued; a command on its way in continues
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     input wire logic take_i,
-    input wire logic [1:0] word_i,  // of the pass
-    input wire logic [13:0] inverted_limit_i,  // a word of the limit, inverted, a clock behind word_i
-    output logic geometry_short_o,  // a clock after the limit's last word
-    output logic feed_short_o,
-    output logic covered_o,  // paths have all the ticks that pieces have, or more
+    input wire logic [1:0] word_i,  // word of the pass
+    input wire logic [13:0] inverted_limit_i,  // a word of the limit, inverted, one clock after word_i
+    output logic geometry_short_o,  // paths: count <= limit; valid a clock after the limit's last word
+    output logic feed_short_o,  // pieces: count <= limit; valid a clock after the limit's last word
+    output logic covered_o,  // paths have at least as many ticks as pieces
     output logic at_rest_o,  // the last piece ends at rest
-    output logic at_barrier_o  // what arrived last is a barrier
+    output logic at_barrier_o  // the command that arrived last is a barrier
 );
   localparam logic [55:0] EMPTY = 56'd0 - 56'(Reserve);
 
@@ -38,11 +38,12 @@ module queued_ticks #(
   assign halfword = arrival_pkg::halfword(arrival_i);
   assign reset = rst_i || cut_i;
 
-  // The command on its way in: header, three halfwords of count, the payload, of which a piece's stop distance counts.
+  // The command on its way in: header, three halfwords of count, payload. Of the payload only a piece's stop distance
+  // is used.
   localparam logic [3:0] STOP_DISTANCE = 4'd10;
   logic [ 3:0] index_q;
   logic [39:0] count_q;
-  logic        zero_q;  // the stop distance is
+  logic        zero_q;  // the stop distance is 0
   logic        adding_q;
   always_ff @(posedge clk_i) begin
     if (reset || ends) index_q <= 4'd0;
@@ -55,7 +56,7 @@ module queued_ticks #(
     end else if (adding_q) count_q <= {14'd0, count_q[39:14]};
   end
 
-  // What the next pass does. A barrier's count is clocks, not ticks.
+  // The task of the next pass. A barrier's count is clocks, not ticks.
   logic pending_q, of_paths_q, of_pieces_q, zero_pending_q;
   logic add_paths_q, add_pieces_q;
   logic [3:0] owed_q, taken_q;
@@ -90,7 +91,7 @@ module queued_ticks #(
     end
   end
 
-  // The words go round: only at a pass's end does the lowest one stand where it belongs.
+  // The words rotate: only at the end of a pass is the lowest word in its place.
   logic clearing_q;
   always_ff @(posedge clk_i) clearing_q <= reset || forget_i || (clearing_q && word_i != 2'd3);
 
@@ -107,7 +108,8 @@ module queued_ticks #(
     pieces_sum = {1'b0, pieces_q[13:0]} + {1'b0, change} + {14'd0, first ? !adding_q : pieces_carry_q};
     paths_carry_q <= paths_sum[14];
     pieces_carry_q <= pieces_sum[14];
-    // Whom a command does not concern is asked after the addition: a table of the adder has room for that.
+    // A counter that the command does not concern drops the sum after the addition: a table of the adder has room for
+    // that.
     paths_q <= {adding_q && !add_paths_q ? paths_q[13:0] : paths_sum[13:0], paths_q[55:14]};
     pieces_q <= {adding_q && !add_pieces_q ? pieces_q[13:0] : pieces_sum[13:0], pieces_q[55:14]};
     if (clearing_q) begin
@@ -116,9 +118,9 @@ module queued_ticks #(
     end
   end
 
-  // Carries of count - limit - 1 and of paths - pieces: what is taken away is added inverted. The sign lies in the last word,
-  // where its inverse makes the carry tell which number is larger; the limit has none.
-  logic [15:0] paths_over, pieces_over, covered;  // {carry, difference, carry in's place}
+  // Carries of count - limit - 1 and of paths - pieces; the subtrahends are added inverted. The sign is in the last
+  // word. Inverted there, it makes the carry tell which number is larger; the limit has no sign.
+  logic [15:0] paths_over, pieces_over, covered;  // {carry, difference, place of the carry in}
   logic paths_over_q, pieces_over_q;
   logic [13:0] paths_word, pieces_word, inverted_limit;
   logic begins, closes;

@@ -1,11 +1,13 @@
-// The ticks that a stop takes from the present ratio: stop distance * ratio^2, from above, anew every 32 clocks.
+// The ticks that a stop takes from the present ratio: stop distance * ratio^2, rounded up, computed every 32 clocks.
 //
-// The ratio is taken in 256ths, rounded up, and so is its square: at full ratio the product is exact, and never too small.
-// By step_i: 0 the ratio is taken (but while keep_i), 1 to 10 squared, 12 to 21 multiplied with the stop distance, 25 to
-// 28 it leaves in words of 14 bits. While 12 to 21 the stop distance stands still.
+// The ratio is taken in 256ths, rounded up, and so is its square: at full ratio the product is exact, and it is never
+// too small. By step_i: in 0 the ratio is taken (unless keep_i), in 1 to 10 it is squared, in 12 to 21 multiplied by
+// the stop distance, and in 25 to 28 the product leaves in words of 14 bits. In 12 to 21 the stop distance does not
+// change.
 //
-// The stop distance in force is that of the piece in force; a piece that ends at rest (0) goes on with that of the piece
-// before, which has its speed. Where the next piece begins from rest, follow_i, it is the next one's.
+// The stop distance in force is that of the piece in force. A piece that ends at rest (0) keeps the stop distance of
+// the piece before it, since it begins with the speed of that piece. If the next piece begins from rest (follow_i), its
+// stop distance is used.
 `default_nettype none
 
 module stop_ticks (
@@ -14,19 +16,19 @@ module stop_ticks (
     input wire logic cut_i,
     input wire logic [4:0] step_i,
     input wire logic [16:0] ratio_i,
-    input wire logic keep_i,  // the ratio taken stays
-    input wire logic twice_i,  // twice the product; as it is in step 11
-    input wire logic none_i,  // 0 instead: the card stands
+    input wire logic keep_i,  // the ratio taken before is kept
+    input wire logic twice_i,  // twice the product is wanted; sampled in step 11
+    input wire logic none_i,  // 0 instead of the product; sampled in step 11
     input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
     input wire logic swap_i,  // a piece began in the clock before
-    input wire logic from_rest_i,  // nothing was in force before it, or what ends at rest
+    input wire logic from_rest_i,  // before it nothing was in force, or a piece that ends at rest
     input wire logic follow_i,
     output logic next_zero_o,  // the next piece's stop distance is 0: it ends at rest
     output logic ruled_o,  // the stop distance in force is not 0
-    output logic [13:0] inverted_o  // a word, inverted: who compares with it needs it so
+    output logic [13:0] inverted_o  // a word of the product, inverted for the comparison
 );
   logic        load;
-  logic        half_q;  // the lower halfword is there
+  logic        half_q;  // the lower halfword has arrived
   logic        low_zero_q;
   logic [31:0] next_q;
   logic [15:0] word;
@@ -49,7 +51,7 @@ module stop_ticks (
   logic        due_q;
   logic        still;
   logic        take;
-  // The next piece's comes no earlier than 14 clocks after a swap: what is due is taken before.
+  // The next piece's stop distance arrives at least 14 clocks after a swap; by then one that is due has been taken.
   assign still = step_i >= 5'd12 && step_i <= 5'd21;
   assign take  = !still && (due_q || follow_i);
   always_ff @(posedge clk_i) begin
@@ -61,15 +63,15 @@ module stop_ticks (
     if (swap_i && (from_rest_i || !next_zero_o)) due_q <= 1'b1;
   end
 
-  // The square is made in the register that the ratio's bits leave at the lower end; later its own bits pass place 7, where
-  // the product asks for them. It begins with 255, shifted in at the upper end in the eight clocks before: so 256ths of it
-  // are rounded up.
+  // The square is made in the register from whose lower end the ratio's bits leave. Later its own bits pass bit 7,
+  // where the product reads them. The sum begins with 255, shifted in at the upper end in the eight clocks before; so
+  // 256ths of it are rounded up.
   logic [ 8:0] ratio_q;
   logic [17:0] square_q;
   logic [ 9:0] square_sum;
   logic        add;
   logic        round;
-  assign add = step_i <= 5'd10 && square_q[0];  // in steps 0 and 1 it is 0
+  assign add = step_i <= 5'd10 && square_q[0];  // square_q[0] is 0 in steps 0 and 1
   assign round = step_i >= 5'd25 || step_i == 5'd0;
   assign square_sum = {1'b0, square_q[17:9]} + {1'b0, ratio_q};
   always_ff @(posedge clk_i) begin
@@ -78,8 +80,8 @@ module stop_ticks (
     if (step_i == 5'd1) square_q[8:0] <= ratio_q;
   end
 
-  // The square has nine bits: the tenth step halves, or does not where twice the product is wanted. Whether a bit counts is
-  // asked after the addition: a table of the adder has room for that.
+  // The square has nine bits: the tenth step halves, unless twice the product is wanted. Whether a bit counts is
+  // decided after the addition: a table of the adder has room for that.
   logic        none_q;
   logic        twice_q;
   logic [33:0] product_q;

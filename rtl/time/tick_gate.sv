@@ -1,28 +1,28 @@
 // Decides the tick of the whole card: ticks of the feed generator (in direct mode: enabled clocks) are owed until the
-// path can take them. `take_o` is decided from registers only and leaves as `tick_o` a clock later.
+// path can take them. `take_o` is decided from registers only and leaves as `tick_o` one clock later.
 //
 // The generator is stalled while two or more ticks are owed. At most five more arrive then (this gate's registers, the
-// generator's three clocks), so that four bits never overflow. Those that a shut gate owes to a direct move may: only a
-// cut opens it again.
+// generator's three clocks), so four bits never overflow. Ticks that a shut gate owes to a direct move may overflow:
+// only a cut opens the gate again.
 //
-// A silent piece runs in every clock, whatever the time base says: nothing moves, so that a card that stands held is
-// brought to a place inside a path. Its ticks never become those of a piece that makes steps: that one begins 16 clocks
-// later at the earliest (feed_sequencer), when the generator has been cleared.
+// A silent piece runs in every clock, regardless of the time base: nothing moves, so that a held card can be brought to
+// a place inside a path. Its ticks never become those of a piece that makes steps: such a piece begins at least 16
+// clocks later (feed_sequencer), when the generator has been cleared.
 `default_nettype none
 
 module tick_gate (
     input  wire logic clk_i,
     input  wire logic rst_i,
     input  wire logic cut_i,
-    input  wire logic enable_i,       // of the time base
+    input  wire logic enable_i,       // enable of the time base
     input  wire logic feed_tick_i,
     input  wire logic feed_active_i,  // a piece gives ticks
-    input  wire logic silent_i,       // which make no steps
+    input  wire logic silent_i,       // the ticks of that piece make no steps
     input  wire logic direct_i,       // a direct move is under way
     input  wire logic taking_i,       // a path takes ticks
-    input  wire logic ready_i,        // and so does its engine
-    input  wire logic shut_i,         // no tick is taken
-    input  wire logic wait_i,         // nor made: the drives are not enabled
+    input  wire logic ready_i,        // the path's engine accepts ticks
+    input  wire logic shut_i,         // no tick may be taken
+    input  wire logic wait_i,         // no tick may be taken or made: the drives are not enabled
     output logic      take_o,         // combinational
     output logic      tick_o,
     output logic      feed_enable_o,
@@ -35,7 +35,7 @@ module tick_gate (
   logic       source_active;
 
   assign source_active = feed_active_i || direct_i;
-  // After a cut or a reset neither a piece nor a direct move is left, so that nothing is owed a clock later.
+  // After a cut or a reset neither a piece nor a direct move is left, so nothing is owed one clock later.
   assign take_o = owed_q && taking_i && ready_i && source_active && !shut_i && !wait_i;
 
   always_ff @(posedge clk_i) begin : p_count

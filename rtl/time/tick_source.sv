@@ -1,8 +1,8 @@
-// Where the card's ticks come from: the time base's enabled clocks, the feed pieces, the gate that takes their ticks.
+// The source of the card's ticks: the time base's enabled clocks, the feed pieces, the gate that takes their ticks.
 `default_nettype none
 
 module tick_source #(
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -16,28 +16,28 @@ module tick_source #(
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     // ticks
     input wire logic [path_pkg::WIDTH-1:0] path_i,
-    input wire logic ready_i,  // the path's engine takes ticks
-    input wire logic finished_i,  // and has finished all that were given
-    input wire logic shut_i,  // no tick is taken
-    input wire logic wait_i,  // nor made: the drives are not enabled
-    input wire logic settled_i,  // nor has one been for 31 clocks
+    input wire logic ready_i,  // the path's engine accepts ticks
+    input wire logic finished_i,  // the path's engine has finished all ticks given so far
+    input wire logic shut_i,  // no tick may be taken
+    input wire logic wait_i,  // no tick may be taken or made: the drives are not enabled
+    input wire logic settled_i,  // nothing has moved for 31 clocks
     output logic take_o,  // combinational
     output logic tick_o,
-    output logic swap_o,  // of the feed piece
-    input wire logic card_idle_i,  // nothing runs, is decoded or queued; up to four clocks late
-    input wire logic session_gone_i,  // the one that wrote the stream is no more
+    output logic swap_o,  // event: a feed piece begins
+    input wire logic card_idle_i,  // nothing runs, is decoded or queued; delayed by up to four clocks
+    input wire logic session_gone_i,  // the session that wrote the stream has been replaced by another
     // barriers
     output logic at_barrier_o,
     output logic runs_o,  // a piece gives ticks, or a decoded one waits (combinational)
     // under-run
     output logic underrun_hold_o,
-    output logic underrun_o,  // it holds, or keeps a piece waiting
-    output logic [31:0] underruns_o,  // how often it has held
+    output logic underrun_o,  // the under-run guard holds, or keeps a piece waiting
+    output logic [31:0] underruns_o,  // number of under-run holds so far
     // status
     output logic active_o,  // a piece gives ticks
-    output logic moving_o,  // and has, or the one before it in one go
-    output logic fixed_o,  // the piece's class is fixed (combinational)
-    output logic silent_o,  // its ticks make no steps
+    output logic moving_o,  // the piece has given a tick, or directly follows one that has
+    output logic fixed_o,  // the present piece's class is fixed (combinational)
+    output logic silent_o,  // the present piece's ticks make no steps
     output logic idle_o,  // nothing runs, is decoded or queued (combinational)
     output logic [16:0] ratio_o,
     output logic [31:0] rate_o,
@@ -59,7 +59,7 @@ module tick_source #(
   logic [ snapshot_pkg::WIDTH-1:0] behind_ratio;
   logic [ snapshot_pkg::WIDTH-1:0] behind_rate;
 
-  // What the snapshot REST tells of the path.
+  // Ticks left of the path, for the snapshot REST.
   logic [                    39:0] left;
   assign left = path_i[path_pkg::UNFINISHED] && settled_i ? path_i[path_pkg::LEFT+:40] : '0;
 

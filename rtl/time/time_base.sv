@@ -1,32 +1,33 @@
 // The time base: a clock enable with a programmable ratio of all clocks, slewed linearly towards its target.
 //
 // Every 4th clock the ratio moves by at most a step towards its goal and never past it. An update takes 4 clocks:
-//   0  the last update's result becomes the ratio; the goal of this one is sampled (hold, the class's target)
+//   0  the last update's result becomes the ratio; the goal of this update is sampled (hold, or the class's target)
 //   1  direction: goal against ratio
 //   2  candidate: ratio + or - step
 //   3  whether the candidate reached or passed the goal
-// A step is SLEW. With classes it is doubled as often as the piece in force says, up to three times: turn 2 samples SLEW
-// and the doublings for the next update, turns 3, 0 and 1 double. A doubling that would pass 28 bits is not made.
-// The goal is a sampled copy because direction and arrival must be judged against the same one: otherwise a hold that
+// A step is SLEW. With classes it is doubled as often as the piece in force says, up to three times: turn 2 samples
+// SLEW and the number of doublings for the next update, turns 3, 0 and 1 double. A doubling that would exceed 28 bits
+// is not made.
+// The goal is a sampled copy, because direction and arrival must be judged against the same goal: otherwise a hold that
 // comes in between would let the ratio jump.
 `default_nettype none
 
 module time_base #(
-    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter logic [31:0] Engines = '1  // built-in engines: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic hold_i,
-    input wire logic [1:0] class_i,  // of the piece in force
-    input wire logic [1:0] slew_shift_i,  // likewise: how often SLEW is doubled, with classes
-    input wire logic [7:0] left_i,  // what the snapshot REST has in the ratio's place
+    input wire logic [1:0] class_i,  // class of the piece in force
+    input wire logic [1:0] slew_shift_i,  // doublings of SLEW in that piece, with classes
+    input wire logic [7:0] left_i,  // value of the snapshot REST in place of the ratio
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
     output logic enable_o,
     output logic [16:0] ratio_o
 );
-  // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1, modulo 2^29.
+  // Q1.28: 1 is 2^28. The candidate is between -2^28 and 2^29 - 1, modulo 2^29.
   localparam logic [28:0] ONE = 29'h1000_0000;
 
   logic [16:0] feed_q;
@@ -34,8 +35,8 @@ module time_base #(
   logic [16:0] fixed_q;
   logic [16:0] target;
   logic [27:0] slew_q;
-  logic [27:0] step_q;  // of an update
-  logic [ 1:0] doublings_q;  // that it still needs
+  logic [27:0] step_q;  // step of the update
+  logic [ 1:0] doublings_q;  // doublings that the step still needs
   logic [ 1:0] turn_q;
   logic [31:0] data;
 
@@ -90,13 +91,14 @@ module time_base #(
   end
 
   logic [28:0] ratio_q;
-  logic [16:0] inverted_goal_q;  // so an adder compares with it: X - goal - 1 = X + ~goal
+  logic [16:0] inverted_goal_q;  // inverted, so that an adder compares with it: X - goal - 1 = X + ~goal
   logic up_q, arrived_q;
   logic [28:0] candidate_q;
 
-  // Ratio and candidate less the goal less one, below which 12 bits are 0. The lowest bits make the carry in: 1 where the
-  // number has something below, and for a candidate on its way up. Ratio and candidate lie within a step of each other, and
-  // the goal on the candidate's side or between them: the candidate's difference needs no bit more than the goal.
+  // Ratio less goal less one, and candidate less goal less one; the goal has 12 zeros below. The lowest bits make the
+  // carry in: it is 1 if the number has ones below, and for a candidate on its way up. Ratio and candidate are within a
+  // step of each other, and the goal is on the candidate's side or between them; so the candidate's difference needs no
+  // more bits than the goal.
   logic [18:0] ratio_sum;
   logic [17:0] candidate_sum;
   assign ratio_sum = {1'b0, ratio_q[28:12], 1'b1} + {1'b1, inverted_goal_q, ratio_q[11:0] != 12'd0};
@@ -135,7 +137,7 @@ module time_base #(
   assign enable_o = enable_q;
   assign ratio_o  = ratio_q[28:12];
 
-  // STATUS and FAULT pass here: no wider than 22 bits.
+  // STATUS and FAULT pass through here: they are at most 22 bits wide.
   snapshot_slice #(
       .Width(22)
   ) ratio (

@@ -1,13 +1,14 @@
-// Under-run hold: the card slows down along its path early enough to stand before what is queued ends, and goes on by
-// itself. A piece that would begin from rest waits for as much.
+// Under-run hold: the card slows down along its path early enough to be at rest before the queued commands end, and
+// continues by itself. A piece that would begin from rest waits until enough is queued.
 //
-// Every 32 clocks: short is what is queued <= stop distance * ratio^2 + Reserve, but where the last piece ends at rest
-// with its paths queued, or a barrier comes last. The guard begins to hold when it is short in motion, and ends when there
-// is twice as much for the ratio at which it began: so it does not chatter. For the same reason a piece that would begin
-// from rest waits for twice as much, unless a queue is full: then more will not come. Where the card stands, too, anything
-// beyond the reserve is enough, and it goes on as fast as that allows.
+// Every 32 clocks the guard decides whether the queues are short: queued ticks <= stop distance * ratio^2 + Reserve.
+// They are not short if the last piece ends at rest and its paths are queued, or if a barrier comes last. The guard
+// begins to hold when they are short in motion. It ends the hold when twice as much is queued, for the ratio at which
+// the hold began, so that it does not chatter. For the same reason a piece that would begin from rest waits for twice
+// as much, unless a queue is full and no more can come. If the card is also at rest, anything beyond the reserve is
+// enough, and the card goes on as fast as that allows.
 //
-// What a probe drops is taken out of the queues unseen. From then on there is no rule, until nothing is queued once.
+// A probe drops commands from the queues uncounted. From then on the rule is suspended, until nothing is queued once.
 `default_nettype none
 
 module underrun_guard #(
@@ -15,24 +16,24 @@ module underrun_guard #(
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic cut_i,  // and where there is no rule: nothing is counted
-    input wire logic lost_i,  // event: what is queued will be dropped
-    input wire logic idle_i,  // nothing runs, is decoded or queued; up to four clocks late
-    input wire logic gone_i,  // the session that wrote what is queued is no more: nothing begins or goes on
+    input wire logic cut_i,  // a cut, or position streaming, which has no rule: nothing is counted
+    input wire logic lost_i,  // event: the queued commands will be dropped
+    input wire logic idle_i,  // nothing runs, is decoded or queued; delayed by up to four clocks
+    input wire logic gone_i,  // the session that wrote the queued commands was replaced: nothing begins or continues
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
     input wire logic take_i,  // a feed tick is taken
     input wire logic swap_i,  // a piece began in the clock before
     input wire logic active_i,  // a piece gives ticks
-    input wire logic decoded_i,  // a piece waits
+    input wire logic decoded_i,  // a decoded piece waits
     input wire logic [16:0] ratio_i,
-    output logic wait_o,  // a piece that is decoded must not begin (combinational)
+    output logic wait_o,  // a decoded piece must not begin (combinational)
     output logic hold_o,
-    output logic shown_o,  // holds, or keeps a piece waiting
-    output logic [31:0] underruns_o
+    output logic shown_o,  // the guard holds, or keeps a piece waiting
+    output logic [31:0] underruns_o  // number of under-run holds so far
 );
   localparam int Reserve = card_map_pkg::UNDERRUN_RESERVE_TICKS;
-  localparam logic [4:0] LOOK = 5'd11;  // the stop distance that is taken now is judged
+  localparam logic [4:0] LOOK = 5'd11;  // the stop distance that is taken in this step is judged
   localparam logic [4:0] DECIDE = 5'd29;
 
   logic [4:0] step_q;
@@ -44,24 +45,24 @@ module underrun_guard #(
   logic standing;
   logic full;
   logic ends_q;  // the piece in force ends at rest
-  logic covered_q;  // all its ticks have their paths
+  logic covered_q;  // all its ticks have their paths queued
   logic from_rest, from_rest_q;
   logic follow;
-  logic judges;  // the next piece is what is judged in this round: sampled at LOOK
-  logic twice_q;  // by twice the stop's ticks, so that the round begins no hold
+  logic judges;  // this round judges the next piece; sampled at LOOK
+  logic twice_q;  // the round demands twice the stop's ticks, so it begins no hold
   assign full = arrival_i[arrival_pkg::FULL];
   assign standing = ratio_i == 17'd0;
   assign from_rest = !active_i || ends_q;
   assign follow = !active_i || (ends_q && covered_q);
 
   logic lost;
-  logic unknown;  // or was lost while the counts were compared that are decided on next
+  logic unknown;  // the counts are lost, or were lost during the comparison that is decided next
 
   if (Probing) begin : gen_probing
     logic lost_q;
     logic unknown_q;
-    logic inside_q;  // of a command on its way in
-    logic [2:0] since_q;  // the last command came; 7: long ago
+    logic inside_q;  // inside a command on its way in
+    logic [2:0] since_q;  // clocks since the last command arrived; 7: 7 or more
 
     always_ff @(posedge clk_i) begin
       if (arrival_pkg::writes(arrival_i)) inside_q <= 1'b1;
@@ -126,7 +127,7 @@ module underrun_guard #(
   logic decoded_q;
   logic judged_q;
   logic holds;
-  logic enough_q;  // for it
+  logic enough_q;  // enough is queued for the next piece
   logic waits_q;
   logic short;
   logic waits;

@@ -1,6 +1,6 @@
-// CRC-32 of a frame, a bit a clock: of the one that comes in, or of the one that goes out, since both never do at once.
-// A byte taken at c has passed at c+9. The CRC's own bytes leave by shifting without feedback: each shows inverted at the
-// low end.
+// CRC-32 of a frame, one bit per clock: of an incoming frame or of an outgoing one, since the two never come at the
+// same time. A byte taken at c has passed at c+9. The bytes of the CRC itself leave by shifting without feedback: each
+// appears inverted at the low end.
 `default_nettype none
 module frame_crc (
     input wire logic clk_i,
@@ -10,7 +10,7 @@ module frame_crc (
     input wire logic feed_i,  // 0: the byte only shifts
     input wire logic [7:0] byte_i,
     output logic busy_o,
-    output logic whole_o,  // data and their CRC have passed
+    output logic whole_o,  // data and their correct CRC have passed
     output logic [7:0] byte_o  // the CRC's next byte
 );
   localparam logic [31:0] POLYNOMIAL = 32'hEDB88320;

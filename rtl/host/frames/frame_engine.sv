@@ -1,13 +1,13 @@
-// Requests in a stream of bytes, replies in another, accesses at the inner port: docs/reference/frames.md.
-// One request at a time; what comes while it runs or is replied to is dropped. One block RAM of 512 bytes: the lower half
-// for a request, the upper for the reply, whose words stay for a repeat.
+// Requests in a stream of bytes, replies in another stream, accesses at the inner port: docs/reference/frames.md. One
+// request is handled at a time; bytes that arrive while it runs or is replied to are dropped. One block RAM has 512
+// bytes: the lower half for a request, the upper half for the reply, whose words stay there for a repeat.
 `default_nettype none
 module frame_engine (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic restart_i,  // event: a new connection (a break)
-    input wire logic received_i,  // event, 10 clocks apart at least
-    input wire logic [7:0] byte_i,  // with it
+    input wire logic received_i,  // event; at least 10 clocks apart
+    input wire logic [7:0] byte_i,  // with received_i
     // replies; combinational from registers
     output logic valid_o,
     output logic [7:0] byte_o,
@@ -139,7 +139,7 @@ module frame_engine (
       .answer_i
   );
 
-  // Byte 0 lowest.
+  // The reply's header, byte 0 lowest.
   logic [63:0] header;
   logic        with_words;
 
@@ -171,7 +171,7 @@ module frame_engine (
   (* no_rw_check *) logic [7:0] memory[0:511];
 
   always_ff @(posedge clk_i) begin
-    // What stands at the receiver while no byte comes goes to the place of the next one.
+    // While no byte arrives, the receiver's value is written to the place of the next byte, which overwrites it.
     if (store) memory[{1'b1, execute_place}] <= execute_byte;
     else memory[{1'b0, receive_place}] <= received;
     ram_q <= memory[{sending, sending?send_place : execute_place}];

@@ -1,23 +1,23 @@
-// Takes a request's bytes: undoes the stuffing, keeps the header, puts the rest into the RAM, and says at the frame's end
-// whether it is one: its CRC good, its length that of kind and count (docs/reference/frames.md).
-// Bytes come 10 clocks apart at least, so that each has passed the CRC before the next.
+// Takes a request's bytes: undoes the stuffing, keeps the header, puts the rest into the RAM. At the frame's end it
+// says whether the frame is valid: its CRC is good, and its length fits kind and count (docs/reference/frames.md).
+// Bytes come at least 10 clocks apart, so that each has passed the CRC before the next.
 `default_nettype none
 module frame_receiver (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic listen_i,  // low: a frame with a byte in this clock is dropped
-    input wire logic restart_i,  // what has come of a frame is dropped
+    input wire logic restart_i,  // the bytes of the frame received so far are dropped
     input wire logic received_i,  // event
     input wire logic [7:0] byte_i,
     input wire logic [15:0] epoch_i,
     // CRC
     output logic crc_clear_o,
     output logic crc_start_o,
-    output logic [7:0] byte_o,  // without stuffing
+    output logic [7:0] byte_o,  // byte without stuffing
     input wire logic crc_whole_i,
     // RAM
-    output logic [7:0] place_o,  // of the byte in the frame; it is to be written with crc_start_o
-    // the request, with frame_o and until the next frame
+    output logic [7:0] place_o,  // place of the byte in the frame; written with crc_start_o
+    // the request: valid from frame_o until the next frame
     output logic frame_o,
     output logic [1:0] kind_o,
     output logic fixed_o,
@@ -25,7 +25,7 @@ module frame_receiver (
     output logic malformed_o,
     output logic [15:0] number_o,
     output logic epoch_good_o,
-    output logic [9:0] address_o  // in words
+    output logic [9:0] address_o  // word address
 );
   localparam logic [7:0] END = 8'hC0;
   localparam logic [7:0] ESCAPE = 8'hDB;
@@ -38,7 +38,7 @@ module frame_receiver (
   logic       escaped_q;
   logic       bad_q;
   logic       large_q;  // the count has more than six bits
-  logic       strange_q;  // bits that no request has
+  logic       strange_q;  // bits are set that no request has
   logic       ends;
   logic       escape;
   logic       unescaped;
@@ -49,7 +49,7 @@ module frame_receiver (
   assign escape = byte_i == ESCAPE;
   assign unescaped = byte_i == ESCAPED_END || byte_i == ESCAPED_ESCAPE;
   assign wrong = !listen_i || (escaped_q && !unescaped) || place_q == MOST;
-  // What comes of an end, or after a wrong byte, is never looked at.
+  // A byte that is stored at an end, or after a wrong byte, is never used.
   assign add = received_i && !escape && !wrong;
 
   assign byte_o = !escaped_q ? byte_i : byte_i[0] ? ESCAPE : END;
@@ -106,7 +106,7 @@ module frame_receiver (
 
   always_ff @(posedge clk_i) frame_o <= ends && good && !restart_i && !rst_i;
 
-  // Ask and connect have no words, the others 1 to 59; those of a write are bounded by its length.
+  // ASK and CONNECT have no words, the others 1 to 59; the words of a write are bounded by its length.
   assign malformed_o = strange_q || (kind_o[1] ? count_o == 6'd0 || count_o[5:2] == 4'b1111 : count_o != 6'd0) ||
       large_q;
 endmodule

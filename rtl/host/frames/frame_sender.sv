@@ -1,18 +1,19 @@
-// Sends a reply: header, state and words from the RAM, the CRC, the end; each byte stuffed where it must be.
-// A byte is offered 12 clocks after the one before it was taken, or after start_i; the second half of a stuffed one at once.
+// Sends a reply: header, state and words from the RAM, the CRC, the end. Each byte is stuffed if it must be. A byte is
+// offered 12 clocks after the one before it was taken, or after start_i; the second half of a stuffed byte is offered
+// at once.
 `default_nettype none
 module frame_sender (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic start_i,
-    input wire logic stop_i,  // what is left is not sent
-    // the reply, which stands from start_i to done_o
+    input wire logic stop_i,  // the rest of the reply is not sent
+    // the reply: keeps its values from start_i to done_o
     input wire logic [63:0] header_i,  // byte 0 lowest
     input wire logic [5:0] count_i,  // words after the state
     output logic done_o,  // event
     // RAM
     output logic [7:0] place_o,
-    input wire logic [7:0] ram_i,  // of the place a clock ago
+    input wire logic [7:0] ram_i,  // byte at the place of one clock ago
     // CRC
     output logic crc_start_o,
     output logic crc_feed_o,
@@ -36,19 +37,19 @@ module frame_sender (
 
   localparam int FETCH = 0;  // the RAM reads
   localparam int LOAD = 1;
-  localparam int PASS = 2;  // through the CRC
+  localparam int PASS = 2;  // the byte passes the CRC
   localparam int OFFER = 3;
 
-  logic [3:0] at_q;  // one of them; none: at rest
+  logic [3:0] at_q;  // one-hot; none: at rest
   logic [1:0] section_q;
-  logic [7:0] place_q;  // of the section
+  logic [7:0] place_q;  // place within the section
   logic [7:0] byte_q;
-  logic       second_q;  // of a stuffed byte
+  logic       second_q;  // second half of a stuffed byte
   logic       stuffed;
   logic       taken;
   logic       last;
   logic [7:0] chosen;
-  logic [7:0] header;  // its byte at this place
+  logic [7:0] header;  // byte of the header at this place
   logic [2:0] low;
 
   assign stuffed = (byte_q == END || byte_q == ESCAPE) && section_q != FINISH;
@@ -61,7 +62,7 @@ module frame_sender (
 
   always_comb begin
     chosen = END;
-    last   = (low | 3'd4) == 3'd7;  // of the CRC's
+    last   = (low | 3'd4) == 3'd7;  // last byte of the CRC
     if (section_q == HEADER) begin
       chosen = header;
       last   = low == 3'd7;

@@ -1,5 +1,5 @@
-// What becomes of a frame: whether it runs, what its reply says, and when the engine listens again.
-// Holds the number executed last and the epoch of the connection.
+// Decides for each frame whether it runs, what its reply says, and when the engine listens again. It keeps the number
+// executed last and the epoch of the connection.
 `default_nettype none
 module frame_session (
     input wire logic clk_i,
@@ -16,15 +16,15 @@ module frame_session (
     input wire logic sent_i,
     output logic listen_o,
     output logic start_o,  // event: the executor begins
-    output logic execute_o,  // with it: the request runs
-    output logic new_o,  // no request ran in this epoch yet
+    output logic execute_o,  // with start_o: the request runs
+    output logic new_o,  // no request has run in this epoch yet
     output logic send_o,  // event: the reply begins
     output logic sending_o,
-    // of the reply
+    // fields of the reply
     output logic [15:0] epoch_o,
     output logic [15:0] last_o,
     output logic [2:0] result_o,
-    output logic repeats_o  // what the execution of last_o came to
+    output logic repeats_o  // the reply has the results of executing last_o
 );
   localparam logic [1:0] ASK = 2'd0;
   localparam logic [1:0] CONNECT = 2'd1;
@@ -35,10 +35,10 @@ module frame_session (
   localparam logic [2:0] MALFORMED = 3'd4;
 
   logic        busy_q;
-  logic        dropped_q;  // the reply is for a connection that is no more
+  logic        dropped_q;  // the reply belongs to an earlier connection
   logic        asks;
   logic        connects;
-  logic        runs;  // is executed now, or was executed last
+  logic        runs;  // the request is executed now, or was executed last
   logic        good;
   logic [15:0] ahead;
 

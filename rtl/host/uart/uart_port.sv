@@ -1,5 +1,5 @@
-// A serial line: bytes to and from the frame engine. Until a break and the byte after it have told the baud rate nothing is
-// taken, and the line out is high.
+// A serial line: bytes to and from the frame engine. Until a break and the byte after it have given the baud rate, no
+// byte is received and the output line is high.
 `default_nettype none
 module uart_port #(
     parameter int BreakBits = 20  // a break is 2^BreakBits clocks long: 8 to 24
@@ -12,7 +12,7 @@ module uart_port #(
     // to the frame engine
     output logic restart_o,  // event: a break
     output logic received_o,  // event
-    output logic [7:0] byte_o,  // with it
+    output logic [7:0] byte_o,  // with received_o
     input wire logic valid_i,
     input wire logic [7:0] byte_i,
     output logic ready_o  // combinational from registers
@@ -21,7 +21,7 @@ module uart_port #(
     ERROR_BreakBits_must_be_8_to_24 error ();
   end
 
-  // Marked, so that tools place the two side by side and know that the first one's data has no timing.
+  // The attribute makes tools place the two side by side, and ignore the timing of the first one's data.
   (* async_reg = "true" *)logic rx_first_q;
   (* async_reg = "true" *)logic rx_second_q;
   logic before_q;

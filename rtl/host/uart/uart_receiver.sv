@@ -1,15 +1,15 @@
-// Bytes from the line: start bit, eight bits, lowest first, stop bit, each looked at in its middle. A start that is none, or
-// a byte without its stop bit, is dropped.
+// Receives bytes from the line: start bit, eight bits (lowest first), stop bit, each sampled in its middle. A false
+// start bit, or a byte without its stop bit, is dropped.
 `default_nettype none
 module uart_receiver (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic level_i,  // the line, synchronised
     input wire logic fall_i,  // it is low, and was high a clock ago
-    input wire logic known_i,  // the period is; low: nothing is taken
+    input wire logic known_i,  // the period is known; low: no byte is received
     input wire logic [19:0] period_i,
     output logic received_o,  // event
-    output logic [7:0] byte_o  // with it
+    output logic [7:0] byte_o  // with received_o
 );
   logic       run_q;
   logic [3:0] bit_q;  // 0 the start bit, 9 the stop bit

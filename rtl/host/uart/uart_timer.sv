@@ -1,16 +1,16 @@
-// Ends of bits: after start_i, or after half a bit more, the k-th bit ends at the whole part of k/8 periods. The fraction is
-// carried along, so that ten bits are as long as ten bits.
+// Ends of bits: after start_i, or half a bit later with half_i, the k-th bit ends at the whole part of k/8 periods. The
+// fraction is carried along, so that errors do not add up over ten bits.
 `default_nettype none
 module uart_timer (
     input wire logic clk_i,
-    input wire logic [19:0] period_i,  // clocks of 8 bits
+    input wire logic [19:0] period_i,  // clocks per 8 bits
     input wire logic start_i,
     input wire logic half_i,  // with start_i: half a bit first
-    output logic end_o  // L clocks after start_i or the end before; means nothing when nothing runs
+    output logic end_o  // end of a bit: a bit's length after start_i or the end before; meaningless at rest
 );
   logic [16:0] count_q;
   logic [ 2:0] fraction_q;
-  logic        extra_q;  // this one has a clock more
+  logic        extra_q;  // this bit has one clock more
 
   assign end_o = count_q == 17'd0 || (count_q == 17'd1 && !extra_q);
 

@@ -1,18 +1,18 @@
-// Bytes to the line: start bit, eight bits, lowest first, stop bit.
+// Sends bytes to the line: start bit, eight bits (lowest first), stop bit.
 `default_nettype none
 module uart_transmitter (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic known_i,  // the period is; low: the line is high, nothing is taken
+    input wire logic known_i,  // the period is known; low: the line is high, no byte is taken
     input wire logic [19:0] period_i,
     input wire logic valid_i,
     input wire logic [7:0] byte_i,
-    output logic ready_o,  // the byte is taken where it is valid; combinational from registers
+    output logic ready_o,  // the byte is taken if it is valid; combinational from registers
     output logic tx_o
 );
   logic       run_q;
   logic [3:0] bit_q;  // 0 the start bit, 9 the stop bit
-  logic [8:0] shift_q;  // what comes after this bit
+  logic [8:0] shift_q;  // bits after this one
   logic       take;
   logic       ends;
 

@@ -1,6 +1,6 @@
-// Wishbone B4 slave in front of the card's inner port: classic, or pipelined with one access at a time.
-// What is asked for is registered, so a master may give an access up by taking CYC (classic: or STB) away: it is still
-// made, since the inner port has it, but it is not answered.
+// Wishbone B4 slave in front of the card's inner port: classic, or pipelined with one access at a time. The request is
+// registered, so a master may give an access up by withdrawing CYC (classic: or STB). The access is still made, since
+// the inner port has it, but it is not answered.
 `default_nettype none
 module wishbone_port #(
     parameter int Pipelined = 0  // 1: pipelined
@@ -16,7 +16,7 @@ module wishbone_port #(
     output logic [31:0] dat_o,
     output logic ack_o,
     output logic err_o,
-    output logic stall_o,  // 0 where it is classic
+    output logic stall_o,  // 0 if the port is classic
     // to the inner port
     output logic [register_access_pkg::WIDTH-1:0] access_o,
     input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
@@ -35,9 +35,9 @@ module wishbone_port #(
   logic        stays;
   logic        take;
 
-  // A classic master's STB stands until the answer, which is in the clock of the answer as well.
-  // A pipelined one's is taken by a low STALL: high behind a clock of reset, since a card may hold the port in reset for a
-  // clock longer than its hosts.
+  // A classic master's STB stays high until the answer, including the clock of the answer. A pipelined master's STB is
+  // taken by a low STALL. STALL is high in the clock after a reset, since a card may hold the port in reset one clock
+  // longer than its hosts.
   if (Pipelined != 0) begin : gen_pipelined
     logic was_reset_q;
     always_ff @(posedge clk_i) was_reset_q <= rst_i;
