@@ -261,8 +261,8 @@ class Bridge {
         if (!back.empty()) stream.write(back.data(), back.size());
       }
     } catch (const driver::LinkError&) {
-      // It has gone.
-    }  // the client has gone
+      // The client has gone.
+    }
   }
 
   Board& board_;
