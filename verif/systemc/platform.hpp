@@ -61,7 +61,7 @@ class Platform {
   PlatformOptions options_;
   Motors loose_machine_;
   Motors pin_machine_;
-  std::set<Port> taken_;  // ports in use; kWishbone stands for both Wishbone kinds
+  std::set<Port> taken_;  // ports in use; kWishbone is entered for both Wishbone kinds
   std::vector<std::unique_ptr<Host>> hosts_;
   std::vector<std::unique_ptr<RegisterTarget>> transactors_;
   std::unique_ptr<LooseCard> loose_;

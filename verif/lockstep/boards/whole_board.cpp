@@ -132,7 +132,7 @@ std::vector<driver::Command> parts(bool arc) {
   return {feed, line, driver::make_helix(half, kTicks), line, driver::EndCommand{}};
 }
 
-// Largest distance of a step from the circle, pulses. Steps beside the lines belong to the circle.
+// Largest distance of a step from the circle, pulses. Steps with Y != 0 belong to the circle.
 class Circle {
  public:
   void step(const Motors& at) {

@@ -32,7 +32,7 @@ constexpr bool kMachineInputs = card_map::has_engine(kEngines, card_map::engine:
 constexpr bool kEmergencyStop = card_map::has_engine(kEngines, card_map::engine::kEmergencyStop);
 constexpr bool kEnables = card_map::has_engine(kEngines, card_map::engine::kEnables);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
-// Where arcs are refused they are rare, because each refusal closes the stream.
+// Cards without arcs get few of them, because each refusal closes the stream.
 constexpr unsigned kArcEvery = kArcs ? 4 : 40;
 
 sim::LockstepCard card_with_engines(std::uint64_t seed) {

@@ -155,7 +155,7 @@ void joins(unsigned axes) {
     host.write(reg::kControl, field::kControlSnapshot);
     host.read(reg::kSnapTimeLo);
   }
-  // After a reset a write comes before a read that waits beside it, independent of the last access before the reset.
+  // After a reset a write comes before a read that waits at the same time, independent of the last access before it.
   host.write(reg::kHold, 1);
   host.reset(1);
   host.write_beside_read({reg::kHold, 1}, reg::kHold);

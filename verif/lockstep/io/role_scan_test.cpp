@@ -56,7 +56,7 @@ class Promise {
       settled_ += one.same > kLatest ? 1 : 0;
       active_ += one.same > kLatest && level ? 1 : 0;
       wrong_ += one.same > kLatest && seen != level ? 1 : 0;
-      // What remains are bits that belong to no role: they must be 0.
+      // All other bits belong to no role: they must be 0.
       outputs &= ~(std::uint32_t{1} << bit);
     }
     wrong_ += outputs != 0 ? 1 : 0;

@@ -21,7 +21,7 @@ class Axis {
     bool cut = false;
     bool tick = false;  // path domain
     bool swap = false;
-    bool active = false;       // sampled with swap
+    bool active = false;       // sampled with swap: the axis takes part in the path
     bool direct = false;       // sampled with swap: the count ends the move, and backward mirrors forward
     bool silent = false;       // steps are dropped
     bool engine_step = false;  // from a path engine; never in the clock of a step of the pulse generator

@@ -61,15 +61,15 @@ class CoreModel {
   };
   // The pins, and the signals that the core shows in addition to the port (observe_o; positions: position()).
   struct Outputs {
-    std::uint32_t step = 0;  // pins, by axis
+    std::uint32_t step = 0;  // pins, a bit per axis
     std::uint32_t dir = 0;
     std::uint32_t output = 0;  // outputs of the card
     bool irq = false;
-    bool tick = false;  // feed domain
+    bool tick = false;  // event in the feed domain: a tick was taken
     bool path_tick = false;
-    bool path_swap = false;  // feed domain
+    bool path_swap = false;  // event in the feed domain: a path begins
     bool feed_swap = false;
-    std::uint32_t path_step = 0;  // by axis
+    std::uint32_t path_step = 0;  // a bit per axis
     std::uint32_t path_dir = 0;
     std::uint32_t geometry_room = 0;
     std::uint32_t feed_room = 0;

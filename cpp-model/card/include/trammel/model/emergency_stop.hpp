@@ -41,7 +41,7 @@ class EmergencyStop {
   bool latched() const { return state_.latched; }
   // True if the cause of a stop is active; `clear`: a clear comes in this clock.
   bool stops(bool clear) const { return state_.latch_seen && !clears(clear); }
-  // With these inputs nothing changes, however many clocks pass.
+  // True if clocks with these inputs change nothing, however many pass.
   bool rests(const Inputs& in) const { return next(in) == state_; }
 
  private:

@@ -20,7 +20,7 @@ class HostPorts {
   struct Config {
     bool axi = true;
     bool wishbone = false;
-    bool pipelined = false;  // Wishbone
+    bool pipelined = false;  // the Wishbone port is pipelined
     bool uart = false;
     bool spi = false;
     unsigned break_bits = 20;

@@ -29,7 +29,7 @@ class MachinePlace {
     std::uint8_t homed = 0;
     std::uint8_t keeps = 0;
     std::uint8_t moved = 0;  // has made a step since the motion under way began
-    // Of the previous clock.
+    // Inputs of the previous clock.
     std::uint8_t drives = 0;
     std::uint8_t disabled = 0;
     bool cut = false;  // there was a cut at a ratio other than 0

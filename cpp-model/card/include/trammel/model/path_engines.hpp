@@ -45,7 +45,7 @@ class PathEngines {
     bool ready = true;       // a feed tick may be taken
     bool payload_ready = true;
     bool shadows_free = true;  // the axes' increments may be loaded
-    // Of the arc generator: a halfword, and a bit per axis.
+    // Outputs of the arc generator: a halfword of an increment; load and swap, a bit per axis.
     std::uint16_t chord_word = 0;
     std::uint8_t chord_load = 0;
     std::uint8_t chord_swap = 0;

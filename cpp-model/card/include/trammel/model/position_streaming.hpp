@@ -38,7 +38,7 @@ class PositionStreaming {
   };
   // All that the next clock() depends on besides its inputs.
   struct State {
-    bool on = false;  // written to the register
+    bool on = false;  // mode written to STREAMING, in force from the next rest on
     std::uint32_t stale_periods = 0;
     bool inside = false;       // a command has come in part
     std::uint64_t length = 0;  // ticks of the path under way

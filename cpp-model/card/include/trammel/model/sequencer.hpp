@@ -69,7 +69,7 @@ class Sequencer {
     bool feed_enable = false;
     bool feed_clear = true;
     bool feed_swap = false;  // a piece begins
-    bool mismatch = false;   // events
+    bool mismatch = false;   // event: one queue is at a barrier, the other still has ticks
     bool incomplete = false;
     bool over = false;  // event: a path has ended; of a line, the last tick was taken
     bool path_active = false;

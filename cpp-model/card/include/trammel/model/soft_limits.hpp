@@ -3,9 +3,9 @@
 // away from it.
 //
 // Each clock looks at one axis, in rounds of 4, or of 8 with more than 4 axes. The end on the side of the axis's last
-// pulse was read one clock before; if the axis has turned since, it waits for the next round. An axis that is looked
-// at in clock c, and has made a pulse since the previous look, is a cause at c+2 and in FAULT and LIMIT_STATE at c+3.
-// Not thread-safe; no errors are reported.
+// pulse was read one clock before; if the axis has turned since, it waits for the next round. If an axis that is
+// looked at in clock c has made a pulse since the previous look, and is beyond that end, it is a cause at c+2 and in
+// FAULT and LIMIT_STATE at c+3. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <array>

@@ -41,7 +41,7 @@ class UnderrunGuard {
     bool take = false;        // a feed tick is taken
     bool swap = false;        // a piece began in the clock before
     bool active = false;      // a piece gives ticks
-    bool decoded = false;     // a piece waits
+    bool decoded = false;     // a decoded piece waits to begin
     std::uint32_t ratio = 0;  // 2^-16, 0..65536
   };
   struct Outputs {
@@ -185,7 +185,7 @@ class UnderrunGuard {
     if (state_.out.hold && gone) return true;
     return is_short && (state_.out.hold || (!state_.doubled && (!follow || (state_.judged && full))));
   }
-  // For the piece that is judged.
+  // True if the piece that is judged must wait for more commands.
   bool waits_for_more(bool is_short, bool gone) const { return is_short || (gone && state_.ruled); }
   static std::uint32_t in_256ths(std::uint32_t ratio) { return (ratio + 255) / 256; }
 
