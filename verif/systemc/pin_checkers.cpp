@@ -20,7 +20,7 @@ class VerilatedCheckers final : public PortCheckers {
     dut_.reset();
   }
 
-  // Assertions sample the values of before the edge, so everything that depends on the pins is evaluated first.
+  // Assertions sample the values from before the edge, so everything that depends on the pins is evaluated first.
   void clock(const CardInputs& in, const CardOutputs& out) override {
     drive(in);
     drive(out);

@@ -152,7 +152,7 @@ const std::map<std::string, Breaks>& breaks_axi() {
   return all;
 }
 
-// Longer than a screen: a table with an entry per rule.
+// Over a screen: a table with an entry per rule.
 const std::map<std::string, Breaks>& breaks_axi_card() {
   static const std::map<std::string, Breaks> all = {
       {"AXI4-Lite: BVALID falls before BREADY",

@@ -44,7 +44,7 @@ std::size_t AxiTransactor::transfer(driver::Access* accesses, std::size_t count,
   return count;
 }
 
-// At a rising edge the card's pins show the values of before it, so a handshake is seen at the edge at which it
+// At a rising edge the card's pins show the values from before it, so a handshake is seen at the edge at which it
 // happens.
 bool AxiTransactor::write(const driver::Access& access) {
   AxiMaster m;

@@ -109,7 +109,7 @@ class CardBehindPorts {
     return core;
   }
 
-  // Gives the checkers the RTL's pins of before the edge.
+  // Gives the checkers the RTL's pins from before the edge.
   void judge_rules() {
     platform::CardInputs to;
     to.rst = dut_->rst_i != 0;

@@ -118,7 +118,7 @@ class Bench {
   std::uint64_t rests_ = 0;
 };
 
-// The events of one clock of the directed scenario. Longer than a screen: one case per event.
+// The events of one clock of the directed scenario. Over a screen: one case per event.
 Bench::Inputs happening(unsigned kind) {
   Bench::Inputs in;
   switch (kind) {

@@ -17,10 +17,9 @@ class CommandChecker {
     bool reset = false;
     bool write = false;  // a word; ignored unless ready
     std::uint32_t word = 0;
-    bool flush = false;  // refuses an incomplete command; acts after a word under way, but before a word written in its
-                         // own clock
-    bool clear = false;  // opens the stream; the next number is 0; wins over all other inputs
-    bool closed = false;              // a fault is set: a word written now is refused as FAULTED and changes nothing
+    bool flush = false;   // refuses an incomplete command; acts after a word under way, before one of its own clock
+    bool clear = false;   // opens the stream; the next number is 0; wins over all other inputs
+    bool closed = false;  // a fault is set: a word written now is refused as FAULTED and changes nothing
     std::uint16_t geometry_room = 0;  // halfwords, as the queue shows it
     std::uint16_t feed_room = 0;
   };

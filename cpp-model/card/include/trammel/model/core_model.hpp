@@ -155,7 +155,8 @@ class CoreModel {
   State state_;
 };
 
-// The queues see the checker's outputs of before the edge, and the checker sees the queues' rooms of before the edge.
+// The queues see the checker's outputs from before the edge, and the checker sees the queues' rooms from before the
+// edge.
 template <class ClockPart>
 void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   const bool reset_now = state_.reset_due;

@@ -103,7 +103,7 @@ class HostPorts {
     return all;
   }
 
-  // Engine and port see each other's registered outputs of before the edge.
+  // Engine and port see each other's registered outputs from before the edge.
   void clock_uart(bool rx, const Answer& answer) {
     const UartPort::Outputs& port = uart_.outputs();
     FrameEngine::Inputs engine;

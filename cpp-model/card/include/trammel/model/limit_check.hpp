@@ -32,9 +32,8 @@ class LimitCheck {
   using Ends = std::array<bool, 2>;
   struct AxisState {
     Ends overridden{};
-    Ends reached{};  // side to which the axis last stepped when its limit became active; both sides before the first
-                     // step
-    Ends blamed{};   // ends to report together with `causes`
+    Ends reached{};        // side of the last step when the limit became active; both before the first step
+    Ends blamed{};         // ends to report together with `causes`
     bool moved = false;    // the axis has made a step since reset
     bool pressed = false;  // a limit of the axis was active in the last clock
     std::uint32_t overtravel = 0;

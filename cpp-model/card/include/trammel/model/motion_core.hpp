@@ -1,5 +1,5 @@
 // Golden model of the motion core: sequencers, time base, path engines, axes and stop control, between the queues and
-// the pins. All parts take one rising edge together: each sees the state of before it. Not thread-safe; no errors are
+// the pins. All parts take one rising edge together: each sees the state from before it. Not thread-safe; no errors are
 // reported.
 #pragma once
 
@@ -206,7 +206,7 @@ inline Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
   return probe;
 }
 
-// Each consumer is clocked before its producer, so that it sees the producer's outputs of before the edge.
+// Each consumer is clocked before its producer, so that it sees the producer's outputs from before the edge.
 template <class ClockPart>
 void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   const Probe::Inputs probe = probe_inputs(in);

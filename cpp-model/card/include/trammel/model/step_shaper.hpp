@@ -121,7 +121,7 @@ class StepShaper {
     ++state_.waiting;
   }
 
-  // Pins, position and busy follow the state of before this edge.
+  // Pins, position and busy follow the state from before this edge.
   void show(const Inputs& in) {
     const bool begins = state_.begins();
     if (begins) state_.out.position += state_.back ? ~std::uint32_t{0} : 1U;
