@@ -75,7 +75,7 @@ std::uint64_t Jump::go() {
   return static_cast<std::uint64_t>(end_);
 }
 
-// Accumulations of the feed generator at edges 1 .. `edge`. The enables on their way at the begin come first.
+// Accumulations of the feed generator at edges 1 .. `edge`. The enables on their way at the start come first.
 std::uint64_t Jump::accumulations_to(std::int64_t edge) const {
   if (edge < 2) return edge < 1 ? 0 : first_;
   return first_ + second_ + TimeBaseAhead(core_.state().time_base).enabled_in(static_cast<std::uint64_t>(edge - 2));

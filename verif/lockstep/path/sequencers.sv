@@ -1,5 +1,5 @@
 // Both sequencers and the tick gate between them, as one top for their lockstep: queue words and
-// feed ticks in, the begin and end of paths and pieces out.
+// feed ticks in, the start and end of paths and pieces out.
 `default_nettype none
 
 module sequencers #(

@@ -86,7 +86,7 @@ class Jump {
   const std::uint64_t second_;  // accumulations at edge 2
   unsigned in_flight_ = 0;      // at the start of the jump: bit k belongs to an accumulation at edge -k
   std::array<std::int64_t, 9> flight_{};
-  std::size_t flying_ = 0;          // number of ticks in flight at the begin
+  std::size_t flying_ = 0;          // number of ticks in flight at the start
   std::uint64_t taken_before_ = 0;  // ticks of the path before tick 1
 
   // Accumulations and carries that the generator has made, and the edge of the last one.
