@@ -1,4 +1,5 @@
-// The card with an AXI4-Lite and a pipelined Wishbone port, its signals named as foreign bus masters look for them.
+// The card with an AXI4-Lite and a pipelined Wishbone port. Its signals have the names that third-party bus masters
+// expect.
 `default_nettype none
 module card_on_buses (
     input  wire logic        clk,

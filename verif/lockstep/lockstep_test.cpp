@@ -1,4 +1,4 @@
-// The judges' own tests: what a mismatch report says, what is kept for it, how long a random scenario is.
+// Tests of the judges: the text of a mismatch report, the events kept for it, the length of a random scenario.
 #include "trammel/sim/lockstep.hpp"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// The report of the mismatch in which `scenario` ends; empty for none.
+// The mismatch report of `scenario`; empty if there is none.
 template <class Scenario>
 std::string report_of(Scenario scenario) {
   try {
@@ -36,7 +36,7 @@ TEST(Checker, EqualSignalsAreCountedAndPass) {
   EXPECT_EQ(checker.comparisons(), 10U);
 }
 
-// Sets a variable of the environment and puts it back.
+// Sets an environment variable and restores it.
 class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {
@@ -81,7 +81,7 @@ TEST(Checker, ReportNamesBlockCycleSignalValuesSeedAndEvents) {
             "  cycle 0: swap 0xab\n");
 }
 
-// One bit is enough, whichever.
+// One wrong bit is enough, at any position.
 TEST(Checker, EveryBitCounts) {
   Checker checker("block", 1);
   for (int bit = 0; bit < 64; ++bit) {
@@ -107,7 +107,7 @@ TEST(EventLog, EventsBehindTheCycleAreLeftOut) {
   const std::string text = log.text(50);
   EXPECT_THAT(text, AllOf(HasSubstr("last 32 events"), HasSubstr("cycle 19:"), HasSubstr("cycle 50:"),
                           Not(HasSubstr("cycle 18:")), Not(HasSubstr("cycle 51:"))));
-  // Up to cycle 60 all is found; cycles 29 to 60 stay for a mismatch at 61, and what came later.
+  // All cycles up to 60 are judged. Cycles 29 to 60 are kept for a mismatch at 61, together with the later ones.
   log.settle(60);
   EXPECT_EQ(log.size(), EventLog::kKept + 39);
   EXPECT_THAT(log.text(60), AllOf(HasSubstr("last 32 events"), HasSubstr("cycle 29:"), HasSubstr("cycle 60:")));

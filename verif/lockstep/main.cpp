@@ -1,4 +1,4 @@
-// Runs the tests of a lockstep executable; with --seeded-bug it passes only when they report a mismatch, see judge().
+// Runs the tests of a lockstep executable. With --seeded-bug it passes only if they report a mismatch, see judge().
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
-// Programs as the queues hold them: stretches of paths and feed pieces that cover as many ticks, with barriers between
-// them; what the sequencers and the motion core are judged with. Now and then a program is wrong on purpose.
+// Programs as the queues hold them: stretches of paths and of feed pieces that cover the same number of ticks, with
+// barriers between them. They drive the tests of the sequencers and the motion core. Some programs are wrong on
+// purpose.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,7 @@ using Halfwords = std::vector<std::uint16_t>;
 
 inline constexpr std::int64_t kOnePulse = std::int64_t{1} << 40;
 
-// In its stored form. Fields that are not named are 0; `increments` are those of the mask's axes.
+// A command in its stored form. Fields that are not named are 0; `increments` are those of the axes in the mask.
 inline Halfwords stored_command(card_map::Opcode opcode, unsigned mask, std::uint64_t count,
                                 const std::vector<Field>& fields = {},
                                 const std::vector<std::int64_t>& increments = {}) {
@@ -48,24 +49,24 @@ class Programs {
  public:
   Programs(unsigned axes, Dice& dice) : axes_(axes), dice_(dice) {}
 
-  // One in `wrong_every` stretches gives more ticks than it takes, or less; one in as many arcs misses its end.
+  // One stretch in `wrong_every` gives more or fewer ticks than it takes; one arc in as many misses its end.
   unsigned wrong_every = 100;
-  // Without them all paths are lines.
+  // False: all paths are lines.
   bool arcs = true;
-  // Every other arc in 8 directions.
+  // True: every other arc is in 8 directions.
   bool eight_directions = false;
-  // In chords, on the arc generator.
+  // True: arcs in chords, on the arc generator.
   bool chords = false;
-  // OUTPUT and MARK between paths.
+  // True: OUTPUT and MARK between paths.
   bool path_commands = false;
-  // One of so many among them is a PWM; 0: none.
+  // One in this many of them is a PWM; 0: none.
   unsigned pwm_every = 0;
-  // PROBE, PROBE_END and WAIT_INPUT among them, on inputs below `inputs`.
+  // True: also PROBE, PROBE_END and WAIT_INPUT, on inputs below `inputs`.
   bool probes = false;
   unsigned inputs = 16;
-  // Pieces of all classes; else feed.
+  // True: pieces of all classes; otherwise only feed.
   bool classes = false;
-  // The most ticks of a stretch, and of its paths and pieces.
+  // The maximum ticks of a stretch, and of its paths and pieces.
   unsigned longest = 600;
 
   struct Stretch {
@@ -78,7 +79,7 @@ class Programs {
     std::uint64_t path_ticks = 0;
     std::uint64_t piece_ticks = 0;
     const unsigned paths = dice_.below(6);
-    const bool single = dice_.chance(4);  // paths and pieces of one tick each, one after the other
+    const bool single = dice_.chance(4);  // paths and pieces of one tick each, in sequence
     const bool probing = probes && dice_.chance(3);
     if (probing) s.geometry.push_back(conditional(card_map::Opcode::Probe, 0));
     for (unsigned i = 0; i < paths; ++i) {
@@ -141,7 +142,7 @@ class Programs {
     s.feed.push_back(command);
   }
 
-  // Commands that are neither paths nor barriers, some in a row now and then.
+  // Commands that are neither paths nor barriers; sometimes several in a row.
   void instants(std::vector<Halfwords>& to) {
     while (path_commands && dice_.chance(3)) {
       if (pwm_every != 0 && dice_.chance(pwm_every))
@@ -159,7 +160,7 @@ class Programs {
     std::vector<std::int64_t> increments;
     for (unsigned axis = 0; axis < axes_; ++axis) {
       if ((mask >> axis & 1) == 0) continue;
-      // Half of them a step every few ticks.
+      // Half of them make a step every few ticks.
       const std::uint64_t any = dice_.chance(2) ? dice_.word() >> 23 >> dice_.below(5) : dice_.log_uniform(41);
       const auto magnitude = static_cast<std::int64_t>(any % (kOnePulse + 1));
       increments.push_back(dice_.chance(2) ? magnitude : -magnitude);
@@ -168,7 +169,7 @@ class Programs {
     return ticks;
   }
 
-  // A full circle, with as many path ticks as it has steps.
+  // A full circle, with as many path ticks as steps.
   std::uint64_t arc(std::vector<Halfwords>& to) {
     constexpr std::int64_t kStepsInEight[] = {6, 12, 16, 24, 28, 32, 40, 44};  // 4 round(sqrt(2) R) from R = 2 on
     const std::int64_t radius = 1 + dice_.below(8);
@@ -190,7 +191,7 @@ class Programs {
     return static_cast<std::uint64_t>(ticks);
   }
 
-  // Any chords, with any further axes; the increments sum to at most a pulse a tick.
+  // Random chords, with random further axes; the sum of the increments is at most one pulse per tick.
   std::uint64_t chord_arc(std::vector<Halfwords>& to) {
     const unsigned x = dice_.below(axes_);
     const unsigned y = (x + 1 + dice_.below(axes_ - 1)) % axes_;
@@ -246,8 +247,8 @@ class Programs {
   Dice& dice_;
 };
 
-// A queue with a writer that fills it command by command, as the checker does: halfwords come one at a time, and count
-// from the commit on that follows the command's last one.
+// A queue, and a writer that fills it command by command as the checker does: one halfword at a time, which become
+// readable with the commit after the command's last one.
 class QueueWriter {
  public:
   explicit QueueWriter(std::size_t depth) : queue_(depth) {}
@@ -255,11 +256,11 @@ class QueueWriter {
   void add(const std::vector<Halfwords>& commands) {
     commands_.insert(commands_.end(), commands.begin(), commands.end());
   }
-  // Nothing is left to be written.
+  // True if nothing is left to write.
   bool done() const { return commands_.empty(); }
   const model::HalfwordQueue::Outputs& outputs() const { return queue_.outputs(); }
 
-  // What it gives to the queue in the clock that begins; the writer goes on when `write`.
+  // The inputs of the queue in the clock that begins; the writer continues if `write`.
   const model::HalfwordQueue::Inputs& offer(bool write) {
     offered_ = {};
     if (write && !commands_.empty()) go_on(offered_);
@@ -301,7 +302,7 @@ class QueueWriter {
   model::HalfwordQueue queue_;
   model::HalfwordQueue::Inputs offered_;
   std::deque<Halfwords> commands_;
-  std::size_t written_ = 0;  // halfwords of the first one
+  std::size_t written_ = 0;  // halfwords of the first command already written
 };
 
 }  // namespace trammel::lockstep

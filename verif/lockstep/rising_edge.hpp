@@ -1,5 +1,6 @@
-// One clock of a Verilated model. Compiled together with what Verilator wrote (cmake/JoinVerilated.cmake), not with the
-// test: a test then knows a block by its ports alone and links with any copy of it. The model was evaluated before.
+// One clock of a Verilated model. It is compiled together with Verilator's output (cmake/JoinVerilated.cmake), not
+// with the test: a test then depends only on the ports of a block, and links with any copy of it. The model must have
+// been evaluated before.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +15,11 @@ void rising_edge(Dut& dut) {
   dut.eval();
 }
 
-// All that eval() finds to do at a rising edge when nothing in the RTL happens at another: the functions that Verilator
-// 5.006 wrote for what depends on inputs and for the edge, without the search for triggers before, between and after
-// them. clk_i and Verilator's memory of it stay as they are, so eval() finds no edge afterwards. JoinVerilated.cmake
-// refuses other events than posedge clk_i, but for the flip-flop that the emergency stop sets asynchronously: it counts
-// with the clock here.
+// Does all that eval() does at a rising edge, provided that nothing in the RTL reacts to another event: it calls the
+// functions that Verilator 5.006 generated for changes of the inputs and for the edge, without the searches for
+// triggers before, between and after them. clk_i and Verilator's copy of it do not change, so eval() finds no edge
+// afterwards. JoinVerilated.cmake refuses events other than posedge clk_i, except the flip-flop that the emergency
+// stop sets asynchronously, which here acts with the clock.
 template <class Root>
 void evaluate_inputs(Root& root, void (*eval_ico)(Root*)) {
   root.__VicoTriggered.at(0) = true;

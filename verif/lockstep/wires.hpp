@@ -1,4 +1,4 @@
-// What blocks have in common in their locksteps: buses as the RTL's ports carry them, the snapshot's slice, dice.
+// Shared by the locksteps of blocks: buses as the RTL's ports carry them, a slice of the snapshot, random numbers.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ inline std::uint32_t roles_wire(const model::InputRoles& roles) {
                                     in_place(kToolSetter, roles.tool_setter) | in_place(kProbe, roles.probe));
 }
 
-// The bundle of the inputs' levels onto a block's port.
+// Puts the bundle of the inputs' levels on a block's port.
 template <class Port>
 void put_inputs(Port& port, std::uint32_t levels, std::uint32_t raw, std::uint32_t quiet) {
   using namespace bus::input_levels;
@@ -71,14 +71,14 @@ inline model::LoadWord halfword(unsigned target, std::uint64_t value, unsigned i
   return {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
 }
 
-// A word of the snapshot chain: takes its value at a strobe, what comes in at a shift. Unknown before either.
+// A word of the snapshot chain: takes its value at a strobe, and the incoming word at a shift. Unknown before either.
 class SnapshotWord {
  public:
-  // `snapshot` is the chain as it comes in.
+  // `snapshot`: the incoming chain.
   void clock(std::uint64_t snapshot, std::uint32_t value) {
     clock(snapshot, value, static_cast<std::uint32_t>(get(snapshot, bus::snapshot::kWord)), true);
   }
-  // The same behind another slice.
+  // The same, behind another slice.
   void clock(std::uint64_t snapshot, std::uint32_t value, const SnapshotWord& before) {
     clock(snapshot, value, before.word_, before.known_);
   }
@@ -104,14 +104,14 @@ class Dice {
   std::uint32_t draw() { return static_cast<std::uint32_t>(random_() >> 32); }
   std::uint32_t below(std::uint32_t n) { return draw() % n; }
   bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
-  // Any number of bits up to `bits`, each as often as the others.
+  // A number of at most `bits` bits; all lengths are equally likely.
   std::uint64_t log_uniform(std::uint32_t bits) { return random_() >> (64 - bits) >> below(bits); }
-  // Up to 4 below a power of two, at most 2^bits: a counter of so many bits that stands there soon carries or wraps.
+  // At most 4 below a power of two that is at most 2^bits: a counter of that width soon carries or wraps.
   std::uint64_t before_carry(std::uint32_t bits) {
     const std::uint32_t bit = 3 + below(bits - 2);
     return (bit == 64 ? 0 : std::uint64_t{1} << bit) - 1 - below(4);
   }
-  // The snapshot chain as it may come in: any word, mostly neither shift nor strobe.
+  // A random input of the snapshot chain: any word, mostly with neither shift nor strobe.
   std::uint64_t snapshot() {
     const bool event = chance(8);
     const bool strobe = event && chance(2);

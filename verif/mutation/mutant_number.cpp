@@ -1,4 +1,4 @@
-// The selector of the instrumented RTL: which mutant runs, from the environment. 0 is the sound design.
+// The selector of the instrumented RTL: the environment chooses the mutant that runs. 0 is the unmodified design.
 #include <cstdlib>
 
 extern "C" int trammel_mutant() {

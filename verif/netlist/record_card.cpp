@@ -19,7 +19,7 @@ using netlist::Recorder;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr std::uint32_t kFractionBits = 40;  // of an increment
+constexpr std::uint32_t kFractionBits = 40;  // fraction bits of an increment
 
 class Program {
  public:
@@ -38,7 +38,7 @@ class Program {
     card_.write(reg::kSlew, 0x200000 + below(0x8000000));
   }
 
-  // Lines, an arc, the feed pieces for them; then a dwell and the end, and bus traffic until all is done.
+  // Lines, an arc and their feed pieces; then a dwell and the end, with bus traffic until all is done.
   void paths() {
     std::uint64_t total = 0;
     for (std::uint32_t lines = 1 + below(3); lines != 0; --lines) total += line();
@@ -70,7 +70,7 @@ class Program {
     settle();
   }
 
-  // Steps that the shapers cannot make in time end in a fault; the abort and the clear after it in either order.
+  // Steps that the shapers cannot make in time cause a fault; then an abort and a clear in either order.
   void overrun() {
     card_.write(reg::kHoldLimit, 40);
     card_.write(reg::step_length(0), 200);
@@ -85,7 +85,7 @@ class Program {
     card_.write(reg::step_length(0), 3);
   }
 
-  // An abort somewhere in a line, a truncated command, accesses that are refused.
+  // An abort at a random time of a line, a truncated command, accesses that are refused.
   void errors() {
     piece(line());
     card_.wait(below(300));
@@ -107,7 +107,7 @@ class Program {
     card_.write(reg::kRefusal, 1);
   }
 
-  // A reset of one clock somewhere in a line; then the card has its settings of after a reset.
+  // A reset of one clock at a random time of a line; afterwards the card has its reset settings.
   void reset() {
     piece(line());
     card_.wait(below(300));
@@ -154,7 +154,7 @@ class Program {
     return ticks;
   }
 
-  // About a tick in 24 clocks, with a little acceleration and jerk.
+  // About one tick per 24 clocks, with a little acceleration and jerk.
   void piece(std::uint64_t ticks) {
     driver::FeedCommand feed;
     feed.ticks = ticks;
@@ -192,7 +192,7 @@ class Program {
     card_.wait(below(250));
   }
 
-  // Until nothing runs; what never ends is aborted.
+  // Waits until nothing runs; aborts a program that does not end.
   void settle() {
     for (int i = 0; i < 200; ++i) {
       const std::uint32_t status = card_.read(reg::kStatus);
@@ -221,7 +221,7 @@ class Program {
 };
 
 void record(const char* path, std::uint64_t clocks, std::uint32_t seed) {
-  Recorder card(path, seed * 0x35 & 0xFF, seed);  // every seed another level of the pins
+  Recorder card(path, seed * 0x35 & 0xFF, seed);  // each seed has other levels of the pins
   card.reset(8);
   Program program(card, seed);
   for (unsigned part = 0; card.seen().clocks < clocks; ++part) {

@@ -17,7 +17,7 @@ template <class Value>
 void append_hex(std::string& line, const Value& value, unsigned width) {
   fmt::format_to(std::back_inserter(line), "{:0{}x}", value, (width + 3) / 4);
 }
-// Wide ports are arrays of words, the lowest first.
+// Wide ports are arrays of words, lowest word first.
 template <std::size_t kWords>
 void append_hex(std::string& line, const VlWide<kWords>& value, unsigned) {
   for (std::size_t i = kWords; i-- > 0;) fmt::format_to(std::back_inserter(line), "{:08x}", value[i]);
@@ -130,8 +130,8 @@ void Recorder::clock() {
   write_line();
 }
 
-// What is recorded is a card that runs right. Nothing is known of it before its first reset, which takes effect after
-// the second clock.
+// Only a correct card is recorded. Its outputs are unknown before the first reset, which takes effect after the
+// second clock.
 void Recorder::judge() {
   if (++seen_.clocks < 2) return;
   sim::CardRecord rtl;

@@ -1,5 +1,5 @@
-// The Verilated card on a bus of its own, beside its golden model; every clock's inputs and outputs go to a file, for
-// the replay on the synthesised netlist.
+// The Verilated card on a bus of its own, beside its golden model. The inputs and outputs of every clock go to a
+// file, for the replay on the synthesised netlist.
 #pragma once
 
 #include <cstdint>
@@ -13,33 +13,33 @@
 
 namespace trammel::netlist {
 
-// The file: a first line that names the ports in order, `name<width` for an input and `name>width` for an output; then
-// a line a clock with their values in hexadecimal, the outputs as they are after the clock's edge.
+// The file: the first line names the ports in order, `name<width` for an input and `name>width` for an output. Then
+// follows one line per clock with their values in hexadecimal; outputs are those after the clock's edge.
 class Recorder {
  public:
   static constexpr unsigned kAxes = 4;
-  static constexpr unsigned kPins = 4;  // inputs, and outputs
+  static constexpr unsigned kPins = 4;  // inputs, and as many outputs
 
-  // What the recording must have seen to be worth a replay; clocks or edges, counted.
+  // Counts of clocks or edges; the recording must have seen all of them to be worth a replay.
   struct Seen {
     std::uint64_t clocks = 0;
     std::uint64_t steps = 0;       // rising edges of STEP pins
-    std::uint64_t path_ticks = 0;  // of the accumulator
+    std::uint64_t path_ticks = 0;  // path ticks of the accumulator
     std::uint64_t direct = 0;      // clocks in a direct move
-    std::uint64_t held = 0;        // clocks with a path, the time base at 0
+    std::uint64_t held = 0;        // clocks with a path while the ratio is 0
     std::uint64_t interrupts = 0;  // rising edges
     std::uint64_t refused = 0;     // answers with an error
     std::uint64_t faulted = 0;     // clocks with a fault
   };
 
-  // `idle_level`: the strap, {second pins, first pins}; `seed` is only named where RTL and model differ. Throws
-  // std::runtime_error when the file cannot be written.
+  // `idle_level`: the strap, {second pins, first pins}. `seed` is only for the report if RTL and model differ. Throws
+  // std::runtime_error if the file cannot be written.
   Recorder(const std::string& path, std::uint32_t idle_level, std::uint32_t seed);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  // `strobes`: the bytes of the word that are written. Both return an access's answer; a refused read gives 0.
+  // `strobes`: the bytes of the word that are written. Both return the answer; a refused read returns 0.
   bool write(std::uint32_t address, std::uint32_t data, std::uint8_t strobes = model::Axi4LitePort::kAllStrobes);
   std::uint32_t read(std::uint32_t address);
   void wait(std::uint64_t clocks);

@@ -1,4 +1,4 @@
-// What SystemC wants to know of the bundles of pins.hpp so that they can be the type of a signal.
+// The functions that SystemC requires of the bundles of pins.hpp, so that they can be the type of a signal.
 #pragma once
 
 #include <ostream>
@@ -9,7 +9,7 @@
 
 namespace trammel::platform {
 
-// Gives each pin of a bundle with its name to `visit`.
+// Calls `visit` with the name and the value of each pin of a bundle.
 template <class Visit>
 void each_pin(const AxiMaster& b, Visit visit) {
   visit("awvalid", b.awvalid), visit("awaddr", b.awaddr), visit("wvalid", b.wvalid), visit("wdata", b.wdata);
@@ -39,7 +39,7 @@ void each_pin(const SpiCard& b, Visit visit) {
   visit("miso", b.miso), visit("enable", b.enable);
 }
 
-// Of any bundle. SystemC finds them by their arguments' namespace.
+// For any bundle. SystemC finds these functions by the namespace of their arguments.
 struct AnyPin {
   template <class Pin>
   void operator()(const char*, const Pin&) const {}

@@ -1,4 +1,4 @@
-// What the host's side puts on the pins of a Verilated top: the card and the checkers of its ports take the same.
+// Puts the host's side on the pins of a Verilated top. The card and the checkers of its ports take the same pins.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace trammel::platform {
 
-// As rtl/host/wishbone has its bus: {cyc, stb, we, sel, adr, dat}.
+// The bus as rtl/host/wishbone has it: {cyc, stb, we, sel, adr, dat}.
 inline std::uint64_t bits_of(const WishboneMaster& m) {
   return std::uint64_t{m.cyc} << 50 | std::uint64_t{m.stb} << 49 | std::uint64_t{m.we} << 48 |
          std::uint64_t{m.sel} << 44 | std::uint64_t{m.adr} << 32 | m.dat;
@@ -18,7 +18,7 @@ inline std::uint8_t bits_of(const SpiMaster& m) {
   return static_cast<std::uint8_t>(unsigned{m.mosi} << 2 | unsigned{m.cs_n} << 1 | unsigned{m.sck});
 }
 
-// The pins whose names both tops share: reset, AXI4-Lite and the serial line.
+// The pins with the same names in both tops: reset, AXI4-Lite and the serial line.
 template <class Dut>
 void drive_shared(Dut& dut, const CardInputs& in) {
   dut.rst_i = in.rst;

@@ -15,7 +15,7 @@ using sc_core::sc_time_stamp;
 
 constexpr double kDefaultPeriod = 100e-6;  // s
 
-// What the Verilated card of verif/lockstep/frames is built with.
+// The configuration of the Verilated card of verif/lockstep/frames.
 model::CardConfig card_config(std::uint32_t clock_hz) {
   model::CardConfig config;
   config.axes = kAxes;
@@ -33,7 +33,7 @@ void show(sc_core::sc_out<T>& port, T& shown, const T& now) {
   port.write(now);
 }
 
-// Whether the card, which goes on by some clocks, made the access.
+// Makes the access, for which the card runs some clocks. Returns whether the card accepted it.
 bool access_card(model::CoreModel& card, std::uint16_t switches, driver::Access& access) {
   model::CoreModel::Inputs in;
   in.request = true;
@@ -48,7 +48,7 @@ bool access_card(model::CoreModel& card, std::uint16_t switches, driver::Access&
     card.clock(in);
   }
   const model::CoreModel::Answer answer = card.answer();
-  card.clock(in);  // the next request comes after the answer's clock
+  card.clock(in);  // the next request must come after the answer's clock
   if (!answer.error && !access.write) access.data = answer.data;
   return !answer.error;
 }
@@ -106,7 +106,7 @@ MachineModule::MachineModule(const sc_core::sc_module_name& name, Motors& machin
   SC_METHOD(time_passes);
 }
 
-// DIR high is the negative direction.
+// A high DIR is the negative direction.
 void MachineModule::pulses() {
   const std::uint32_t rises = step.read() & ~step_before_;
   step_before_ = step.read();
@@ -145,7 +145,8 @@ void LooseCard::run_on() {
   next_trigger(period(), irq_changes_);
 }
 
-// Of no length it would be called for ever without time going on, and beyond the end of SystemC's time never again.
+// A period of 0 would be called for ever without time advancing; one beyond the end of SystemC's time would never be
+// called again.
 sc_time LooseCard::period() const {
   const sc_time quantum = tlm_utils::tlm_quantumkeeper::get_global_quantum();
   if (quantum == sc_core::SC_ZERO_TIME) return sc_time(kDefaultPeriod, sc_core::SC_SEC);
@@ -156,7 +157,7 @@ std::uint64_t LooseCard::cycle_at(const sc_time& time) const {
   return static_cast<std::uint64_t>(time.to_seconds() * clock_hz_ + 0.5);
 }
 
-// In pieces of a period, with the switches as they stood at its beginning.
+// Runs in steps of a period, with the switches of the start of each step.
 void LooseCard::run_to(const sc_time& time) {
   const std::uint64_t end = cycle_at(time);
   const std::uint64_t most = std::max<std::uint64_t>(1, cycle_at(period()));
@@ -176,7 +177,7 @@ std::size_t LooseCard::transfer(driver::Access* accesses, std::size_t count, sc_
   return made;
 }
 
-// Each read is made on a copy of the card.
+// The reads are made on a copy of the card.
 std::size_t LooseCard::peek(driver::Access* reads, std::size_t count) {
   model::CoreModel now = card_;
   now.set_steps(nullptr);

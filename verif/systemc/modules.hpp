@@ -1,4 +1,4 @@
-// The card as modules of SystemC, at two levels, the checkers of its ports, and the machine behind it.
+// The card as SystemC modules at two levels, the checkers of its ports, and the machine behind it.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,10 @@
 
 namespace trammel::platform {
 
-// Told of each leading edge at a STEP pin, with the time, s; cycle: the card's clocks since reset.
+// Receives each leading edge at a STEP pin, with the time, s, and the card's clocks since reset.
 using PulseSink = std::function<void(double time, const driver::PinStep& step)>;
 
-// The ends of everything at the card's pins.
+// The ends of all signals at the card's pins.
 template <template <class> class MasterEnd, template <class> class CardEnd>
 struct PinPorts {
   sc_core::sc_in<bool> clk{"clk"};
@@ -36,7 +36,7 @@ struct PinPorts {
   }
 };
 
-// Pin-accurate: the Verilated card. Signals are written where they change.
+// Pin-accurate: the Verilated card. It writes signals only when they change.
 class PinCardModule final : public sc_core::sc_module, public PinPorts<sc_core::sc_in, sc_core::sc_out> {
  public:
   sc_core::sc_in<std::uint32_t> switches{"switches"};
@@ -46,7 +46,7 @@ class PinCardModule final : public sc_core::sc_module, public PinPorts<sc_core::
   sc_core::sc_out<bool> irq{"irq"};
 
   PinCardModule(const sc_core::sc_module_name& name, std::uint32_t clock_hz);
-  // Before the simulation begins: the card with the classic Wishbone port.
+  // Selects the card with the classic Wishbone port. To be called before the simulation begins.
   void set_classic() { classic_ = true; }
   std::uint64_t cycles() const { return cycles_; }
 
@@ -61,10 +61,10 @@ class PinCardModule final : public sc_core::sc_module, public PinPorts<sc_core::
   std::uint64_t cycles_ = 0;
 };
 
-// The checkers at the same signals.
+// The checkers on the same signals.
 class CheckerModule final : public sc_core::sc_module, public PinPorts<sc_core::sc_in, sc_core::sc_in> {
  public:
-  // `serial_period`: the card's clocks for 8 bits of the serial line.
+  // `serial_period`: clocks of the card per 8 bits of the serial line.
   CheckerModule(const sc_core::sc_module_name& name, std::uint32_t serial_period);
   PortCheckers& checkers() { return *checkers_; }
 
@@ -74,7 +74,7 @@ class CheckerModule final : public sc_core::sc_module, public PinPorts<sc_core::
   std::unique_ptr<PortCheckers> checkers_;
 };
 
-// The machine on a pin-accurate card: pulses from STEP and DIR, switches to the inputs.
+// The machine on a pin-accurate card: takes pulses from STEP and DIR, drives the inputs with its switches.
 class MachineModule final : public sc_core::sc_module {
  public:
   sc_core::sc_in<std::uint32_t> step{"step"};
@@ -94,9 +94,9 @@ class MachineModule final : public sc_core::sc_module {
   std::uint32_t step_before_ = 0;
 };
 
-// Loosely timed: the golden model behind the socket, with the machine on its pins. It runs when it is asked, and once
-// per global quantum; so switches and interrupt may be seen a quantum late. The quantum counts as one clock where it is
-// shorter, as 1 s where it is longer, and as 100 microseconds where there is none.
+// Loosely timed: the golden model behind the socket, with the machine on its pins. It runs when it is accessed, and
+// once per global quantum, so switches and interrupt may be seen one quantum late. A quantum shorter than a clock
+// counts as one clock, one longer than 1 s as 1 s, and none as 100 microseconds.
 class LooseCard final : public RegisterTarget, private model::CardSteps {
  public:
   sc_core::sc_out<bool> irq{"irq"};

@@ -1,4 +1,4 @@
-// A machine on STEP and DIR: an axis has a stepper motor (trammel/world/motor.hpp has its equations) that moves a
+// A machine on STEP and DIR. Each axis has a stepper motor (equations in trammel/world/motor.hpp) that moves a
 // carriage by a belt, with a switch near each end of its travel and a stop behind it. Plain C++; one thread.
 #pragma once
 
@@ -12,8 +12,8 @@
 namespace trammel::platform {
 
 struct MotorParameters : world::MotorParameters {
-  // Travel from where the machine stands at the beginning, pulses. The switches close at the ends, the stops come so
-  // many pulses behind them.
+  // Travel from the initial position, pulses. The switches close at the ends; the stops are `overtravel` pulses
+  // behind them.
   double low = -8000;
   double high = 24000;
   double overtravel = 400;
@@ -25,9 +25,9 @@ class Motors {
 
   explicit Motors(const MotorParameters& parameters = {});
 
-  // A pulse for `axis` at this time, s; times do not fall. direction: +1 or -1.
+  // A pulse for `axis` at `time`, s; times never decrease. direction: +1 or -1.
   void pulse(double time, unsigned axis, int direction);
-  // What happens until then.
+  // Simulates until `time`.
   void run_to(double time);
 
   std::int64_t commanded(unsigned axis) const { return motors_[axis].commanded(); }  // pulses
@@ -36,7 +36,7 @@ class Motors {
   // Inputs of the card: bit 2 n: the switch at the low end of axis n, bit 2 n + 1: at the high end; 1: closed.
   std::uint16_t switches() const { return switches_; }
 
-  // A sample every `period` of all axes, from now on.
+  // Records a sample of all axes every `period`, from now on.
   struct Sample {
     double time;  // s
     std::array<double, kAxes> commanded;
@@ -52,7 +52,7 @@ class Motors {
 
   MotorParameters parameters_;
   std::array<world::Motor, kAxes> motors_;
-  std::uint64_t steps_ = 0;  // of integration, done
+  std::uint64_t steps_ = 0;  // integration steps done
   std::uint16_t switches_ = 0;
   double sample_period_ = 0;
   std::vector<Sample> samples_;

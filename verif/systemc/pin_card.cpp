@@ -53,7 +53,7 @@ class VerilatedPinCard final : public PinCard {
     out.irq = dut_->irq_o != 0;
   }
 
-  lockstep::Simulated<Dut> dut_{lockstep::kZeros};  // straps, too
+  lockstep::Simulated<Dut> dut_{lockstep::kZeros};  // all inputs are 0, straps included
 };
 
 }  // namespace

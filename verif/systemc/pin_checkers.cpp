@@ -8,7 +8,7 @@ namespace trammel::platform {
 
 namespace {
 
-// Where port_rule_broken() notes what it is told; set while the checkers are evaluated.
+// port_rule_broken() adds its rules here; set while the checkers are evaluated.
 thread_local std::vector<std::string>* broken_now = nullptr;
 
 class VerilatedCheckers final : public PortCheckers {
@@ -20,7 +20,7 @@ class VerilatedCheckers final : public PortCheckers {
     dut_.reset();
   }
 
-  // Assertions look at what stood before the edge, so all that follows from it is evaluated first.
+  // Assertions sample the values from before the edge, so everything that depends on the pins is evaluated first.
   void clock(const CardInputs& in, const CardOutputs& out) override {
     drive(in);
     drive(out);
@@ -36,7 +36,7 @@ class VerilatedCheckers final : public PortCheckers {
   }
 
  private:
-  // eval() does not select its context by itself.
+  // eval() does not select its context itself.
   std::unique_ptr<Vcheckers> make() {
     Verilated::threadContextp(&context_);
     context_.threads(1);
@@ -72,7 +72,7 @@ std::unique_ptr<PortCheckers> make_port_checkers() { return std::make_unique<Ver
 
 }  // namespace trammel::platform
 
-// What the checkers' assertions call (checkers/*.sv).
+// Called by the checkers' assertions (checkers/*.sv).
 extern "C" void port_rule_broken(const char* rule) {
   if (trammel::platform::broken_now != nullptr) trammel::platform::broken_now->emplace_back(rule);
 }

@@ -1,5 +1,5 @@
-// What Verilator made, behind plain classes: the card with all four host ports, and the checkers of their rules.
-// Neither knows SystemC; one thread.
+// The Verilated models behind plain classes: the card with all four host ports, and the checkers of their rules. Both
+// are independent of SystemC; one thread.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@ namespace trammel::platform {
 class PinCard {
  public:
   virtual ~PinCard() = default;
-  // One rising edge with these levels at the inputs; the outputs show what stands after it.
+  // One rising edge with these levels at the inputs; the outputs are those after it.
   virtual void clock(const CardInputs& in, CardOutputs& out) = 0;
 };
-// `classic`: its Wishbone port takes classic cycles; otherwise pipelined ones.
+// `classic`: the Wishbone port takes classic cycles; otherwise pipelined ones.
 std::unique_ptr<PinCard> make_pin_card(std::uint32_t clock_hz, bool classic);
 
-// The rules are those of checkers/*.sv, which also name them.
+// The rules, and their names, are those of checkers/*.sv.
 class PortCheckers {
  public:
   virtual ~PortCheckers() = default;
-  // One rising edge: what stands at the pins right before it.
+  // One rising edge, with the levels at the pins just before it.
   virtual void clock(const CardInputs& in, const CardOutputs& out) = 0;
 
-  // Those that were broken, in order, each as often as it was.
+  // The broken rules in order, once per violation.
   const std::vector<std::string>& broken() const { return broken_; }
   void clear() { broken_.clear(); }
-  // Straps: clocks of 8 bits on the serial line, 0: not known; the Wishbone port is pipelined.
+  // Straps: clocks per 8 bits on the serial line, 0: unknown; the Wishbone port is pipelined.
   void set_serial_period(std::uint32_t clocks) { serial_period_ = clocks; }
   void set_pipelined(bool pipelined) { pipelined_ = pipelined; }
 

@@ -1,4 +1,4 @@
-// The card's pins in bundles, one for each side of a port, as they stand in one clock. Plain data.
+// The levels of the card's pins in one clock, in bundles, one for each side of a port. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 namespace trammel::platform {
 
 inline constexpr unsigned kAxes = 4;
-inline constexpr unsigned kBreakBits = 10;  // of the serial line: a break is 2^10 clocks
+inline constexpr unsigned kBreakBits = 10;  // serial line: a break is 2^10 clocks
 
 struct AxiMaster {
   bool awvalid = false;
@@ -77,7 +77,7 @@ struct SpiCard {
   bool operator==(const SpiCard& o) const { return miso == o.miso && enable == o.enable; }
 };
 
-// What the host's side and the machine put on the card's pins, and what the card shows.
+// The inputs of the card from the host and the machine, and its outputs.
 struct CardInputs {
   bool rst = false;
   AxiMaster axi;
@@ -91,7 +91,7 @@ struct CardOutputs {
   WishboneCard wishbone;
   bool tx = true;
   SpiCard spi;
-  std::uint8_t step = 0;  // by axis
+  std::uint8_t step = 0;  // a bit per axis
   std::uint8_t dir = 0;
   std::uint8_t outputs = 0;
   bool irq = false;

@@ -12,15 +12,15 @@ namespace {
 using sc_core::SC_SEC;
 using sc_core::sc_time;
 
-// Of the card's clock: the serial line's bits and SCK's period, neither a whole number of clocks.
+// In clocks of the card: a bit of the serial line and the period of SCK, neither of them a whole number.
 constexpr double kClocksOfBit = 25.3;
 constexpr double kClocksOfSck = 4.7;
 constexpr double kClocksOfGap = 8;
-// Clocks of the reset, and after which the programs begin.
+// Clocks of the reset, and clocks before the programs begin.
 constexpr double kReset = 4;
 constexpr double kStart = 10;
 
-constexpr const char* kNames[] = {"loose", "axi", "wishbone", "wishbone_classic", "spi", "uart"};  // as Port
+constexpr const char* kNames[] = {"loose", "axi", "wishbone", "wishbone_classic", "spi", "uart"};  // by Port
 
 sc_time clocks(const PlatformOptions& options, double count) { return sc_time(count / options.clock_hz, SC_SEC); }
 
@@ -35,7 +35,7 @@ std::optional<Port> port_of(const std::string& name) {
   return std::nullopt;
 }
 
-// The pin-accurate card, what is at its pins, and the wires.
+// The pin-accurate card, all modules at its pins, and the wires.
 struct Platform::Pins final : sc_core::sc_module {
   Pins(const sc_core::sc_module_name& name, const PlatformOptions& options, Motors& motors)
       : sc_module(name),
@@ -192,7 +192,7 @@ RegisterTarget& Platform::transactor(Port port) {
   return *transactors_.back();
 }
 
-// Where one failed the others do not count: they may wait for it.
+// If one program fails, the others do not count, because they may wait for it.
 void Platform::program_ended() {
   const bool failed = std::any_of(hosts_.begin(), hosts_.end(), [](const auto& host) { return host->failure(); });
   if (failed || std::all_of(hosts_.begin(), hosts_.end(), [](const auto& host) { return host->done(); }))

@@ -1,4 +1,4 @@
-// Each rule of the checkers (checkers/*.sv) is broken by somebody and found; good traffic breaks none.
+// Every rule of the checkers (checkers/*.sv) is broken and detected; correct traffic breaks none.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace trammel::platform {
 namespace {
 
-constexpr std::uint32_t kPeriod = 80;  // clocks of 8 bits
+constexpr std::uint32_t kPeriod = 80;  // clocks per 8 bits
 constexpr unsigned kBit = kPeriod / 8;
 constexpr unsigned kBreak = 1U << kBreakBits;
 
@@ -37,7 +37,7 @@ class Bench {
   void classic() { checkers_->set_pipelined(false); }
   std::set<std::string> broken() const { return {checkers_->broken().begin(), checkers_->broken().end()}; }
 
-  // A handshake each: taken in the clock after it is asked for.
+  // Accesses with a handshake each: accepted in the clock after the request.
   void axi_write_taken() {
     in.axi.awvalid = in.axi.wvalid = true;
     clock();
@@ -64,7 +64,7 @@ class Bench {
     out.spi.enable = true;
     clock(5);
   }
-  // SCK's period of 4 clocks, `bits` of them.
+  // `bits` periods of SCK, 4 clocks each.
   void spi_bits(unsigned bits) {
     for (unsigned i = 0; i < bits; ++i) {
       in.spi.sck = false;
@@ -74,7 +74,7 @@ class Bench {
       clock(2);
     }
   }
-  // A byte on a line: its bits, start and stop included, lowest first.
+  // A byte on a line: its bits including start and stop bit, lowest first.
   void line(bool& level, unsigned bits, unsigned count = 10, unsigned clocks = kBit) {
     for (unsigned i = 0; i < count; ++i) {
       level = (bits >> i & 1) != 0;
@@ -96,7 +96,7 @@ class Bench {
 
 using Breaks = std::function<void(Bench&)>;
 
-// What breaks each rule, and no other.
+// For each rule, traffic that breaks it and no other rule.
 const std::map<std::string, Breaks>& breaks_axi() {
   static const std::map<std::string, Breaks> all = {
       {"AXI4-Lite: the master asks in reset",
@@ -152,7 +152,7 @@ const std::map<std::string, Breaks>& breaks_axi() {
   return all;
 }
 
-// Over a screen: a table, an entry for each rule.
+// Over a screen: a table with an entry per rule.
 const std::map<std::string, Breaks>& breaks_axi_card() {
   static const std::map<std::string, Breaks> all = {
       {"AXI4-Lite: BVALID falls before BREADY",
@@ -389,7 +389,7 @@ TEST(PortCheckers, EachRuleIsFoundBroken) {
   }
 }
 
-// None that is in the sources is missing above.
+// Checks that the tables above contain every rule of the sources.
 TEST(PortCheckers, NoRuleIsLeftOut) {
   std::set<std::string> written;
   const std::string call = "port_rule_broken(\"";

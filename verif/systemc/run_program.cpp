@@ -1,4 +1,5 @@
-// systemc_run: a program of G-code on the virtual prototype; where the machine was beside where it was sent.
+// systemc_run: runs a program of G-code on the virtual prototype, and compares the machine's position with the
+// commanded one.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -22,7 +23,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr char kLetters[] = "XYZE";
-constexpr double kRest = 0.5;  // pulses between commanded and actual place at the end
+constexpr double kRest = 0.5;  // maximum pulses between commanded and actual position at the end
 
 constexpr const char* kUsage =
     "usage: systemc_run FILE [--port loose|axi|wishbone|wishbone_classic|spi|uart] [--clock HZ] [--svg OUT.svg]\n"
@@ -38,7 +39,7 @@ struct Options {
   PlatformOptions platform;
 };
 
-// Hz, from 100 kHz to 4 GHz.
+// A clock frequency in Hz, from 100 kHz to 4 GHz.
 std::optional<std::uint32_t> clock_of(const std::string& text) {
   double hz = 0;
   const char* const end = text.data() + text.size();
@@ -74,7 +75,7 @@ Options options_of(int argc, char** argv) {
   return options;
 }
 
-// Runs to the end, and until the machine is at rest.
+// Runs the program to its end, and waits until the machine is at rest.
 void run(Host& host, const std::string& file, const machine::Machine& machine) {
   driver::Card card = driver::Card::open(host);
   const auto lines = [&file] { return std::make_unique<gcode::FileLines>(file); };
@@ -88,7 +89,7 @@ chart::Panel over_time(const std::string& title, const std::string& label) {
   return {title, {"time, s"}, {label}, {}, false, true};
 }
 
-// The path in the plane, each axis over time, and how far the machine is behind.
+// The path in the plane, each axis over time, and the lag of the machine.
 std::string picture(const Motors& motors, const machine::Machine& machine) {
   chart::Panel path{"Path of X and Y", {"x, mm"}, {"y, mm"}, {}, true, true};
   chart::Panel places = over_time("Places", "mm");
@@ -115,7 +116,7 @@ std::string picture(const Motors& motors, const machine::Machine& machine) {
   return chart::grid_of({path, places, lags}, 1, 720, 360);
 }
 
-// Prints the table; whether all axes are where they were sent.
+// Prints the table; returns whether all axes are at their commanded positions.
 bool report(const Motors& motors, const machine::Machine& machine) {
   bool arrived = true;
   fmt::print("axis  commanded, mm  machine, mm  largest lag, micrometres\n");

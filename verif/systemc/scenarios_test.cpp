@@ -1,4 +1,5 @@
-// Programs on the virtual prototype, with the driver unchanged. Each is a process of ctest's: SystemC elaborates once.
+// Programs on the virtual prototype, with the unmodified driver. Each test runs in its own process, because SystemC
+// elaborates only once per process.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ void expect_arrived(Motors& machine, unsigned axis, std::int64_t at) {
   EXPECT_NEAR(machine.position(axis), static_cast<double>(at), 0.5) << "axis " << axis;
 }
 
-// A program of G-code, over whatever link.
+// Runs a program of G-code over any link.
 run::Outcome run_program(Host& host, const std::string& text) {
   driver::Card card = driver::Card::open(host);
   const machine::Machine machine = machine::default_machine();
@@ -42,7 +43,7 @@ run::Outcome run_program(Host& host, const std::string& text) {
   run::Runner runner(lines, machine, planner::limits_of(card.identification()));
   runner.plan();
   const run::Outcome outcome = runner.run(card);
-  host.sleep(50ms);  // the machine comes to rest
+  host.sleep(50ms);  // time for the machine to come to rest
   return outcome;
 }
 
@@ -86,7 +87,7 @@ TEST_P(OverEachLink, TheDriverMovesTheMachine) {
   EXPECT_EQ(platform.broken(), std::vector<std::string>{});
 }
 
-// Refusals come through in their place, with what was made before them; the bus's own errors are failures of the link.
+// Refusals arrive in order, after the accesses made before them; errors of the bus itself are link failures.
 TEST_P(OverEachLink, RefusalsAndBadAddresses) {
   platform.add(GetParam(), [&](Host& host) {
     driver::Card card = driver::Card::open(host);
@@ -116,7 +117,8 @@ class AtBothLevels : public testing::TestWithParam<Port> {
 };
 INSTANTIATE_TEST_SUITE_P(Systemc, AtBothLevels, Values(Port::kLoose, Port::kAxi), names);
 
-// The switch closes where the carriage is, not where it was sent, and the card's probe latches the commanded place.
+// The switch closes at the carriage's position, not at the commanded one; the card's probe latches the commanded
+// position.
 TEST_P(AtBothLevels, HomingFindsTheSwitch) {
   PlatformOptions options;
   options.motors.low = -500;
@@ -131,7 +133,7 @@ TEST_P(AtBothLevels, HomingFindsTheSwitch) {
   });
   platform.run();
   EXPECT_EQ(found.outcome, driver::ProbeOutcome::kTripped);
-  // 5,000 pulses a second: the rotor follows by some pulses, and the switch is seen a quantum late at most.
+  // 5,000 pulses per second: the rotor lags by some pulses, and the switch is seen at most one quantum late.
   EXPECT_LT(found.edge.position[0], -500);
   EXPECT_GT(found.edge.position[0], -500 - kPulsesOfFourSteps / 4);
   EXPECT_LT(found.rest.position[0], found.edge.position[0]);
@@ -139,7 +141,7 @@ TEST_P(AtBothLevels, HomingFindsTheSwitch) {
   EXPECT_EQ(platform.machine(loose).switches() & 1, 1);
 }
 
-// At full speed at once the rotor stays behind and falls into another place; the card cannot know.
+// At full speed at once the rotor lags and loses steps; the card cannot detect that.
 TEST_P(AtBothLevels, AMotorStalls) {
   Platform platform;
   platform.add(GetParam(), [&](Host& host) {
@@ -166,8 +168,8 @@ TEST(Systemc, TheSameDistancePlannedArrives) {
   EXPECT_LT(platform.machine(true).largest_lag(0), kPulsesOfFourSteps / 4.0);
 }
 
-// Golden model and Verilated card side by side in one simulation: the same steps on the way, in the same order, and the
-// machines at the same place.
+// Golden model and Verilated card side by side in one simulation: the same steps in the same order, and the machines
+// end at the same position.
 TEST(Systemc, BothLevelsMakeTheSameSteps) {
   const std::string program = "G1 X3 Y2 F1200\nG2 X5 Y4 I2\nG3 X3 Y2 I-2\nM2\n";
   Platform platform;
@@ -188,7 +190,7 @@ TEST(Systemc, BothLevelsMakeTheSameSteps) {
   EXPECT_EQ(platform.broken(), std::vector<std::string>{});
 }
 
-// One card, two computers: one streams over Wishbone while the other looks at it over the serial line.
+// One card and two computers: one streams over Wishbone while the other reads over the serial line.
 TEST(Systemc, TwoLinksAtOnce) {
   Platform platform;
   bool done = false;
@@ -211,7 +213,7 @@ TEST(Systemc, TwoLinksAtOnce) {
   EXPECT_EQ(platform.broken(), std::vector<std::string>{});
 }
 
-// The checkers look at the platform's own wires: a master that takes its request back is found.
+// The checkers observe the platform's own wires: they detect a master that withdraws its request.
 TEST(Systemc, ARogueMasterIsFound) {
   Platform platform;
   platform.add(Port::kWishbone, [&](Host& host) {
@@ -227,7 +229,7 @@ TEST(Systemc, ARogueMasterIsFound) {
   EXPECT_EQ(platform.broken(), std::vector<std::string>{"AXI4-Lite: AWVALID falls before AWREADY"});
 }
 
-// A classic master whose request changes while it waits, which a pipelined one's may.
+// A classic master changes its request while it waits, which only a pipelined master may do.
 TEST(Systemc, ARogueClassicMasterIsFound) {
   Platform platform;
   platform.add(Port::kWishboneClassic, [&](Host& host) {

@@ -1,5 +1,5 @@
-// The platform's parts by themselves and at their borders: targets, Host, and programs that fail. Each test is a
-// process of ctest's: SystemC elaborates once.
+// The parts of the platform alone, and their limits: targets, Host, and programs that fail. Each test runs in
+// its own process, because SystemC elaborates only once per process.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ using testing::Values;
 constexpr std::uint32_t kClock = 1'000'000;
 constexpr std::uint64_t kWindowEnd = 0x1000;
 
-// A loosely timed card and a program as somebody joins them who has a platform of their own.
+// A loosely timed card and a program, connected as in a user's own platform.
 class CardAlone {
  public:
   explicit CardAlone(Host::Software software)
@@ -48,7 +48,7 @@ class AnyQuantum : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Systemc, AnyQuantum, Values(0, 1e-12, 1e7),
                          [](const auto& quantum) { return std::to_string(quantum.index); });
 
-// Without a global quantum, with one far below a clock, and with one that two of are beyond the end of SystemC's time.
+// Without a global quantum, with one far below a clock, and with one of which two exceed SystemC's time.
 TEST_P(AnyQuantum, ALooseCardRuns) {
   tlm_utils::tlm_quantumkeeper::set_global_quantum(sc_time(GetParam(), SC_SEC));
   bool interrupted = false;
@@ -61,7 +61,7 @@ TEST_P(AnyQuantum, ALooseCardRuns) {
     EXPECT_FALSE(host.irq.read());
     interrupted = host.wait_for_interrupt(std::chrono::nanoseconds::max());
     host.sleep(50ms);
-    EXPECT_EQ(card.read_snapshot().position[0], 1000);  // which also runs the machine up to here
+    EXPECT_EQ(card.read_snapshot().position[0], 1000);  // this also runs the machine up to here
   });
   sc_core::sc_start(sc_time(3, SC_SEC));
   EXPECT_TRUE(interrupted);
@@ -78,7 +78,7 @@ TEST(Systemc, ALooseCardRunsWithoutAProgramThatAsks) {
   EXPECT_EQ(alone.card.cycles(), kClock);
 }
 
-// Registers that read back, of which one refuses everything; knows nothing of BurstEnd.
+// Registers that read back, one of which refuses everything; it does not support BurstEnd.
 class PlainTarget final : public sc_core::sc_module {
  public:
   static constexpr std::uint64_t kRefused = 0x108;
@@ -146,7 +146,8 @@ tlm::tlm_response_status status_at(Host& host, std::uint64_t address, unsigned w
   return payload.get_response_status();
 }
 
-// The last word of the window is inside, where the card refuses it; whatever goes beyond is no address of the target.
+// The last word of the window is inside, and the card refuses it; addresses beyond it are not addresses of the
+// target.
 TEST(Systemc, AddressesEndWithTheWindow) {
   CardAlone alone([](Host& host) {
     constexpr std::uint64_t kLast = kWindowEnd - 4;
@@ -167,7 +168,7 @@ TEST(Systemc, AddressesEndWithTheWindow) {
   sc_core::sc_start();
 }
 
-// By debug transport; the bytes that came.
+// Reads by debug transport; returns the bytes received.
 std::string debug_read(Host& host, std::uint64_t address, unsigned length) {
   std::string data(length, '?');
   tlm::tlm_generic_payload payload;
@@ -200,7 +201,7 @@ TEST(Systemc, DebugTransportReadsAnyBytes) {
   sc_core::sc_start();
 }
 
-// A register that cannot be read ends the bytes; it leaves no refusal, as no debug read does.
+// The bytes end at a register that cannot be read. No debug read leaves a refusal.
 TEST(Systemc, DebugTransportEndsWhereNothingCanBeRead) {
   CardAlone alone([](Host& host) {
     EXPECT_EQ(debug_read(host, card_map::reg::kControl, 4), "") << "write only";
@@ -213,7 +214,8 @@ TEST(Systemc, DebugTransportEndsWhereNothingCanBeRead) {
   sc_core::sc_start();
 }
 
-// As the registers stand now, though the card has not been run so far: it is idle again, and nobody ran it.
+// Returns the present registers, although the card has not been run up to now: it is idle again, without having been
+// run.
 TEST(Systemc, DebugTransportShowsThePresentAndLeavesTheCard) {
   tlm_utils::tlm_quantumkeeper::set_global_quantum(sc_time(1, SC_SEC));
   LooseCard* loose = nullptr;
@@ -250,14 +252,14 @@ TEST(Systemc, DebugTransportDoesNotWrite) {
   sc_core::sc_start();
 }
 
-// At the pins a read takes clocks.
+// At the pins a read would take clocks.
 TEST(Systemc, DebugTransportReadsNothingAtPins) {
   Platform platform;
   platform.add(Port::kAxi, [](Host& host) { EXPECT_EQ(debug_read(host, card_map::reg::kMagic, 4), ""); });
   platform.run();
 }
 
-// No card is at the wires.
+// No card is connected to the wires.
 template <class Transactor, class Master, class Card>
 void expect_no_answer(Transactor& transactor) {
   sc_core::sc_clock clk("clk", sc_time(1, sc_core::SC_US));

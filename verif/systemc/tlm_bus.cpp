@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kWord = 4;  // bytes
 constexpr std::uint64_t kWindow = 4096;
 
-// A payload that does not free its extension, whatever ends the transaction.
+// A payload that never frees its extension, however the transaction ends.
 class Burst {
  public:
   Burst() { payload.set_extension(&end); }
@@ -25,7 +25,7 @@ class Burst {
   BurstEnd end;
 };
 
-// Whether `next` goes on a burst that began with `first` and has `count` words.
+// True if `next` continues a burst that began with `first` and has `count` words.
 bool joins(const driver::Access& first, const driver::Access& next, std::size_t count, bool fixed) {
   return next.write == first.write && next.address == first.address + (fixed ? 0 : kWord * count);
 }
@@ -43,7 +43,7 @@ Host::Host(const sc_core::sc_module_name& name, Software software, const sc_core
     : sc_module(name), software_(std::move(software)), start_(start), finished_(std::move(finished)) {
   SC_HAS_PROCESS(Host);
   SC_THREAD(run);
-  set_stack_size(8U << 20);  // a planner is on it
+  set_stack_size(8U << 20);  // large enough for a planner
 }
 
 void Host::run() {

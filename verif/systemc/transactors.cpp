@@ -12,19 +12,19 @@ namespace {
 using std::chrono::nanoseconds;
 
 constexpr std::uint8_t kAllStrobes = 0xF;
-constexpr unsigned kBitsOfByte = 10;  // on a serial line
+constexpr unsigned kBitsOfByte = 10;  // bits per byte on a serial line
 
 nanoseconds to_ns(const sc_core::sc_time& time) {
   return nanoseconds(static_cast<std::int64_t>(time.to_seconds() * 1e9 + 0.5));
 }
 
-// Nothing runs ahead of SystemC's time at the pins.
+// At the pins nothing may run ahead of SystemC's time.
 void catch_up(sc_core::sc_time& delay) {
   if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
   delay = sc_core::SC_ZERO_TIME;
 }
 
-// To the first rising edge at which `done` holds.
+// Waits for the first rising edge at which `done` is true.
 template <class Done>
 void wait_for(const sc_core::sc_in<bool>& clk, Done done) {
   for (int i = 0; i < kLongestAnswer; ++i) {
@@ -44,7 +44,8 @@ std::size_t AxiTransactor::transfer(driver::Access* accesses, std::size_t count,
   return count;
 }
 
-// At a rising edge the card's pins show what stood before it: so a handshake is seen at the edge at which it happens.
+// At a rising edge the card's pins show the values from before it, so a handshake is seen at the edge at which it
+// happens.
 bool AxiTransactor::write(const driver::Access& access) {
   AxiMaster m;
   m.awvalid = m.wvalid = true;
@@ -88,8 +89,8 @@ std::size_t WishboneTransactor::transfer(driver::Access* accesses, std::size_t c
   return made;
 }
 
-// CYC stays from one access to the next. A classic master's request stands until its answer, a pipelined one's until it
-// is taken.
+// CYC stays high from one access to the next. A classic master's request lasts until its answer, a pipelined one's
+// until it is accepted.
 bool WishboneTransactor::access(driver::Access& access) {
   WishboneMaster m;
   m.cyc = m.stb = true;
@@ -163,7 +164,7 @@ nanoseconds UartTransactor::time_of(std::size_t bytes) const {
   return nanoseconds(static_cast<std::int64_t>(1e9 * kBitsOfByte / baud_ * static_cast<double>(bytes) + 1));
 }
 
-// From the start bit's edge the middle of each bit; a byte without a stop bit is none.
+// Samples the middle of each bit, counted from the start bit's edge. A byte without a stop bit is ignored.
 void UartTransactor::listen() {
   for (;;) {
     wait(tx.negedge_event());
@@ -188,12 +189,12 @@ std::size_t SpiTransactor::receive(std::uint8_t* bytes, std::size_t room, nanose
   return take(bytes, room);
 }
 
-// There and back takes exchanges of eight bytes.
+// The time to send and to receive, in exchanges of eight bytes.
 nanoseconds SpiTransactor::time_of(std::size_t bytes) const {
   return to_ns(static_cast<double>(bytes + 8) * 16 * half_ + static_cast<double>(bytes / 8 + 2) * 2 * gap_);
 }
 
-// Ends that only fill are left out, so that silence is nothing.
+// Leaves out ends that only fill, so that silence is empty.
 void SpiTransactor::exchange(const std::uint8_t* bytes, std::size_t count) {
   master.write({true, false, false});
   wait(gap_);
@@ -207,7 +208,7 @@ void SpiTransactor::exchange(const std::uint8_t* bytes, std::size_t count) {
   wait(gap_);
 }
 
-// Highest bit first: put out at SCK's falling edge, taken at its rising one.
+// Highest bit first: output at SCK's falling edge, sampled at its rising edge.
 std::uint8_t SpiTransactor::exchange(std::uint8_t byte) {
   unsigned in = 0;
   for (unsigned bit = 0; bit < 8; ++bit) {

@@ -1,6 +1,6 @@
-// From the transactions of TLM-2.0 to the pins of the card's host ports, each as a master on that bus makes them. They
-// wait for SystemC's time first: at the pins nothing runs ahead. A card that does not answer is a LinkError; the
-// request stands on, since on AXI4-Lite a master must not take it back.
+// Transactors from TLM-2.0 transactions to the pins of the card's host ports, each as a master on that bus. They
+// first wait for SystemC's time, because at the pins nothing runs ahead. A card that does not answer is a LinkError;
+// the request stays at the pins, because an AXI4-Lite master must not withdraw it.
 #pragma once
 
 #include <deque>
@@ -12,7 +12,7 @@
 
 namespace trammel::platform {
 
-// One access after the other.
+// Makes one access after the other.
 class AxiTransactor final : public RegisterTarget {
  public:
   sc_core::sc_in<bool> clk{"clk"};
@@ -27,7 +27,7 @@ class AxiTransactor final : public RegisterTarget {
   bool write(const driver::Access& access);
 };
 
-// A pipelined or a classic master, one access after the other under one CYC.
+// A pipelined or a classic master; makes one access after the other under one CYC.
 class WishboneTransactor final : public RegisterTarget {
  public:
   sc_core::sc_in<bool> clk{"clk"};
@@ -43,7 +43,7 @@ class WishboneTransactor final : public RegisterTarget {
   bool classic_;
 };
 
-// What SPI and serial line have in common: bytes, and frames of bytes by the driver's own FrameBus.
+// Shared by SPI and serial line: bytes, and frames of bytes made by the driver's own FrameBus.
 class FrameTransactor : public RegisterTarget, protected driver::ByteLink {
  public:
   const driver::FrameBus::Counts& counts() const { return bus_->counts(); }
@@ -60,13 +60,14 @@ class FrameTransactor : public RegisterTarget, protected driver::ByteLink {
  private:
   std::size_t transfer(driver::Access* accesses, std::size_t count, sc_core::sc_time& delay) override;
 
-  std::optional<driver::FrameBus> bus_;  // connects with the first transfer
+  std::optional<driver::FrameBus> bus_;  // connects at the first transfer
 };
 
-// A serial line at `baud`, which knows nothing of the card's clock; `break_time`: as the card wants it.
+// A serial line at `baud`, independent of the card's clock; `break_time`: the length of a break that the card
+// requires.
 class UartTransactor final : public FrameTransactor {
  public:
-  sc_core::sc_out<bool> rx{"rx"};  // of the card
+  sc_core::sc_out<bool> rx{"rx"};  // RX of the card
   sc_core::sc_in<bool> tx{"tx"};
 
   UartTransactor(const sc_core::sc_module_name& name, double baud, const sc_core::sc_time& break_time);
@@ -84,7 +85,7 @@ class UartTransactor final : public FrameTransactor {
   sc_core::sc_event byte_came_;
 };
 
-// An SPI master in mode 3 with this period of SCK, which knows nothing of the card's clock; `gap`: between CS and SCK,
+// An SPI master in mode 3 with this period of SCK, independent of the card's clock; `gap`: time between CS and SCK,
 // and between exchanges.
 class SpiTransactor final : public FrameTransactor {
  public:

@@ -18,7 +18,7 @@ constexpr std::size_t kCountBegin = 2;
 constexpr std::size_t kCountHalfwords = 3;
 constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;
 
-// Steps of a word's way, in clocks after its write.
+// Steps of the processing of a word, in clocks after its write.
 constexpr int kStoreLow = 2;
 constexpr int kReadNumber = 3;
 constexpr int kStoreHigh = 4;
@@ -185,13 +185,13 @@ Reason CommandChecker::judge_header(const Inputs& in) const {
   return Reason::None;
 }
 
-// The first violation among the fields that have begun, in their order.
+// The first violation among the fields that have begun to arrive, in their order.
 Reason CommandChecker::judge_payload() const {
   Field count{};
   count.bits = 40;
   count.halfwords = kCountHalfwords;
   count.minimum = state_.command->count_minimum;
-  // A count that must be 0 is judged halfword by halfword.
+  // The first violation among the fields that have arrived so far, in their order.
   for (std::size_t i = kCountBegin; state_.command->count_maximum == 0 && i < std::min(state_.received, kPayloadBegin);
        ++i) {
     if (state_.halfwords[i] != 0) return Reason::BadField;
@@ -208,7 +208,7 @@ Reason CommandChecker::judge_payload() const {
   return state_.received > end && state_.halfwords[end] != 0 ? Reason::BadField : Reason::None;
 }
 
-// A field is judged when its last halfword is there.
+// A field is checked when its last halfword has arrived.
 Reason CommandChecker::judge_field(const Field& field, std::size_t begin) const {
   if (state_.received < begin + field.halfwords) return Reason::None;
   const uint128 all = value(begin, field.halfwords);

@@ -11,12 +11,12 @@ namespace {
 
 using card_map::Opcode;
 
-constexpr int kHeader = 4;  // halfwords before the payload, as they are stored
+constexpr int kHeader = 4;  // stored halfwords before the payload
 constexpr int kMaxPayload = 64;
 constexpr int kEndless = 1 << 20;
-constexpr std::size_t kFurtherAxes = 28;  // of an arc in chords: where their increments begin in the payload
+constexpr std::size_t kFurtherAxes = 28;  // arc in chords: offset of the increments of the other axes in the payload
 
-// Where the halfwords of a payload go, and the first one that waits.
+// The targets of a payload's halfwords, and the first halfword that waits.
 struct Layout {
   std::array<std::uint16_t, kMaxPayload> targets{};
   int pause_at = kEndless;
@@ -40,7 +40,8 @@ Layout layout_of(Opcode opcode, const Names& names, std::string_view waits) {
   return layout;
 }
 
-// By opcode, of what a card can be built with; the others have no payload, or a line's.
+// Layouts by opcode, of all commands that a card can be built with. The other commands have no payload, or that of a
+// line.
 std::array<Layout, 256> all_layouts() {
   namespace path = load_target;
   namespace feed = feed_target;
@@ -57,7 +58,7 @@ std::array<Layout, 256> all_layouts() {
                                                            {"half_x", path::kHalfX},
                                                            {"half_y", path::kHalfY}},
                                                           "plane");
-  // Increments are numbered in the order of state_.axes.
+  // The index of an increment here is an index of state_.axes.
   all[static_cast<std::uint8_t>(Opcode::ArcChord)] = layout_of(Opcode::ArcChord,
                                                                {{"prescale", path::kPrescale},
                                                                 {"plane", path::kChordPlane},
@@ -104,7 +105,7 @@ unsigned CommandFetch::target_of(int index) const {
   return target;
 }
 
-// The plane's axes first.
+// Puts the plane's axes first.
 void CommandFetch::order_axes(std::uint16_t plane) {
   const unsigned x = plane >> 4 & 7;
   const unsigned y = plane >> 8 & 7;
@@ -117,7 +118,7 @@ void CommandFetch::order_axes(std::uint16_t plane) {
   }
 }
 
-// The first halfword says how long the command is and which axes a line moves.
+// The first halfword determines the length of the command and the axes of a line.
 void CommandFetch::arrive(int index, std::uint16_t halfword) {
   if (index > 0) {
     state_.bus = {true, static_cast<std::uint16_t>(target_of(index)), halfword};
@@ -150,7 +151,7 @@ void CommandFetch::ask(const Inputs& in) {
   } else if (state_.asked < 0) {
     return;
   } else if (state_.asked < kHeader - 1) {
-    state_.asked = next;  // the header is known when its last halfword is asked for
+    state_.asked = next;  // the header is known when its last halfword is requested
   } else if (next >= state_.length) {
     state_.asked = -1;
     if (state_.mode == Mode::Finishing) state_.mode = Mode::Idle;

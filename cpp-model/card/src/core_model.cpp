@@ -8,7 +8,7 @@ namespace trammel::model {
 
 namespace {
 
-// Halfwords, at least as many as the longest command takes: a queue with less room may have none for the next command.
+// Halfwords, at least the length of the longest command. A queue with less room may have none for the next command.
 constexpr std::uint16_t kMaxGeometryCommand = 64;
 constexpr std::uint16_t kMaxFeedCommand = 32;
 
@@ -166,7 +166,7 @@ CommandChecker::Inputs CoreModel::checker_inputs(bool cut) const {
   return in;
 }
 
-// What the register file sees of the card, as it stands now.
+// Copies the present state of the card to the inputs of the register file.
 void CoreModel::show_registers() {
   RegisterFile::Inputs& in = state_.shown;
   const Sequencer::Outputs& s = state_.motion.sequencer().outputs();
@@ -257,8 +257,8 @@ void CoreModel::record(bool cut) {
   }
   if (state_.motion.engines().path_tick) state_.record.arc_tick();
   if (state_.motion.chord_tick()) state_.record.chord_tick(state_.cycles);
-  // The last tick of a path is its own, though the next one begins in the same clock. On an arc in chords feed ticks
-  // make no step.
+  // A tick belongs to the path that takes it, even if the next path begins in the same clock. On an arc in chords
+  // feed ticks make no step.
   const Sequencer& s = state_.motion.sequencer();
   if (s.outputs().tick) state_.record.tick(state_.cycles);
   const MotionCore::Outputs& m = state_.motion.outputs();

@@ -5,7 +5,7 @@ namespace {
 
 using Word = DeviationPath::Word;
 
-// Halfwords come lowest first, so each one enters at the top and moves the others down.
+// Halfwords come lowest first: each one enters at the top and shifts the others down.
 void shift_gradient(Word& chain, std::uint16_t word) {
   const Word below = (chain >> (DeviationPath::kAlign + 16)) << DeviationPath::kAlign;
   chain = below | static_cast<Word>(word) << 112;

@@ -11,7 +11,7 @@ namespace reg = card_map::reg;
 
 constexpr std::uint64_t kOnePulse = std::uint64_t{1} << card_map::constant::kFractionBits;
 constexpr int kAxisClocks = 17;
-constexpr int kOtherClocks = 8;  // of every other phase
+constexpr int kOtherClocks = 8;  // clocks of each other phase
 
 LoadWord halfword(unsigned target, std::uint64_t value, int index) {
   return {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
@@ -24,7 +24,7 @@ void DirectLoader::enter(Phase phase) {
   state_.step = -1;
 }
 
-// Halfwords go out lowest first; a frequency to the negative side as its two's complement.
+// Halfwords go out lowest first; a negative frequency as its two's complement.
 LoadWord DirectLoader::frequency_halfword(int index) const {
   return halfword(load_target::increment(state_.axis), state_.negative ? 0 - state_.frequency : state_.frequency,
                   index);

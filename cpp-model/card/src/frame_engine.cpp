@@ -8,15 +8,15 @@ namespace trammel::model {
 
 namespace {
 
-// Clocks from one event to the next that shows: docs/developer/architecture.md, frame_engine.
+// Clocks from one visible event to the next: docs/developer/architecture.md, frame_engine.
 constexpr unsigned kFirstWrite = 6;  // start to the first request of a write
-constexpr unsigned kFirst = 1;       // start to any other
-constexpr unsigned kNextWrite = 7;   // answer to the next request
-constexpr unsigned kNextRead = 6;
-constexpr unsigned kAfterWrite = 2;  // the last answer, or a refusal, to the first request for the state
-constexpr unsigned kAfterRead = 6;
-constexpr unsigned kFinish = 5;  // the last answer to the decision whether to reply
-constexpr unsigned kByte = 12;   // that, or a byte's being taken, to the next byte's offer
+constexpr unsigned kFirst = 1;       // start to the first request of any other kind
+constexpr unsigned kNextWrite = 7;   // answer to the next request, of a write
+constexpr unsigned kNextRead = 6;    // the same, of a read
+constexpr unsigned kAfterWrite = 2;  // last answer of a write, or a refusal, to the first request for the card's state
+constexpr unsigned kAfterRead = 6;   // the same, after a read
+constexpr unsigned kFinish = 5;      // last answer to the decision whether to reply
+constexpr unsigned kByte = 12;       // that decision, or the take of a byte, to the offer of the next byte
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void FrameEngine::clock(const Inputs& in) {
   }
 }
 
-// Bytes of the clock; the frame that they end shows in the next one.
+// Takes the byte of this clock. A frame that it completes is visible in the next clock.
 void FrameEngine::receive_as(const Inputs& in, bool listened) {
   if (!in.byte_valid) return;
   if (!listened) {
@@ -153,7 +153,7 @@ void FrameEngine::offer() {
   out_.byte = reply_[place_];
 }
 
-// The second half of a stuffed byte follows at once.
+// The second half of a stuffed byte follows without a pause.
 void FrameEngine::taken() {
   const bool half = reply_[place_] == frames::kEscape;
   if (++place_ == reply_.size()) {

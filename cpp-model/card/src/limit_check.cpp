@@ -11,7 +11,7 @@ bool bit(std::uint32_t mask, unsigned n) { return (mask >> n & 1) != 0; }
 
 }  // namespace
 
-// By role, whatever is overridden. A shared switch is at both ends.
+// By role, without overrides. A shared switch counts at both ends.
 LimitCheck::Ends LimitCheck::pressed(unsigned axis, const InputRoles& roles) const {
   const bool minus = bit(roles.limit_minus, axis);
   const bool plus = bit(roles.limit_plus, axis);
@@ -87,7 +87,7 @@ bool LimitCheck::rests(const Inputs& in) const {
   return true;
 }
 
-// LIMIT_STATE, as FAULT takes the causes.
+// LIMIT_STATE changes in the clock in which FAULT takes the causes.
 void LimitCheck::show(std::uint32_t clear) {
   if ((clear & field::kFaultLimit) != 0) state_.shown &= ~(field::kLimitStateMinus | field::kLimitStatePlus);
   if ((clear & field::kFaultDriveFault) != 0) state_.shown &= ~field::kLimitStateDriveFault;
@@ -98,7 +98,7 @@ void LimitCheck::show(std::uint32_t clear) {
   state_.shown |= std::uint32_t{state_.drives} << field::kLimitStateDriveFaultShift;
 }
 
-// An override lasts no longer than its switch.
+// An override ends when its switch is released.
 void LimitCheck::set(const Setting& setting, const InputRoles& roles) {
   for (unsigned n = 0; n < axes_; ++n) {
     AxisState& axis = state_.axes[n];

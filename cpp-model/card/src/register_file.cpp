@@ -11,7 +11,7 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint32_t kByteInWord = 3;
-// From reset on accesses wait so long for the registers to be filled: a clock for each word of the RAM that is written.
+// After a reset, accesses wait for this many clocks until the registers are filled: one clock per RAM word written.
 std::uint64_t fill_clocks(std::uint32_t engines, std::uint32_t axes) {
   const bool inputs = card_map::has_engine(engines, card_map::engine::kMachineInputs);
   if (card_map::has_engine(engines, card_map::engine::kCaptures)) return axes > 4 ? 615 : 451;
@@ -19,7 +19,7 @@ std::uint64_t fill_clocks(std::uint32_t engines, std::uint32_t axes) {
   return inputs ? 355 : 257;
 }
 
-// ROLES, as the register reads.
+// The value of register ROLES.
 std::uint32_t roles_word(const InputRoles& roles) {
   std::uint32_t word = roles.limit_minus << field::kRolesLimitMinusShift;
   word |= std::uint32_t{roles.limit_plus} << field::kRolesLimitPlusShift;
@@ -76,7 +76,7 @@ RegisterFile::RegisterFile(const Config& config) : config_(config) {
 
 void RegisterFile::reset() { *this = RegisterFile(config_); }
 
-// The last word is on its way for a clock more.
+// The last word needs one clock more.
 bool RegisterFile::filling() const { return state_.time + 1 < fill_clocks(config_.engines, config_.axes); }
 
 void RegisterFile::clock(const Inputs& in) {
@@ -145,7 +145,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
 }
 
 bool RegisterFile::interrupt(const Inputs& in) const {
-  // IRQ_ENABLE has the bits of STATUS, but its bit for busy means idle.
+  // IRQ_ENABLE has the bits of STATUS, except that its bit for busy means idle.
   return state_.irq_enable != 0 && ((status(in) ^ field::kStatusBusy) & state_.irq_enable) != 0;
 }
 
@@ -188,7 +188,7 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
     case reg::kUnderruns:
       return in.underruns;
     default:
-      // A live register that was forgotten here. If the RTL lacks its branch too, it shows UNDERRUNS: a mismatch.
+      // A live register without a case here. If the RTL lacks its branch too, it shows UNDERRUNS: a mismatch.
       return 0;
   }
 }
@@ -228,7 +228,8 @@ void RegisterFile::step_access(const Inputs& in) {
       const bool ram_taken = state_.time < fill_clocks(config_.engines, config_.axes) || state_.snapshot.busy();
       if (!needs_ram || !ram_taken) {
         state_.stage = Stage::Act;
-        // A clock before the rest, so that the checker's refusal comes with the answer; an abort makes it idle.
+        // One clock before the other events, so that the checker's refusal comes with the answer. With an abort it is
+        // not needed.
         const std::uint32_t orders = state_.word & (field::kControlFlush | field::kControlAbort);
         state_.out.flush = state_.write && state_.reason == Reason::None && state_.address == reg::kControl &&
                            orders == field::kControlFlush;
@@ -330,7 +331,7 @@ void RegisterFile::refuse(std::uint8_t reason, std::uint8_t number) {
       state_.address << field::kRefusalAddressShift | std::uint32_t{number} << field::kRefusalCommandShift | reason;
 }
 
-// A refusal by the checker belongs to the access that brought it: a word of the stream, or a flush that is answered in
+// A refusal by the checker belongs to the access that caused it: a word of the stream, or a flush that is answered in
 // this clock.
 void RegisterFile::refuse_checked(const Inputs& in) {
   if (in.checker_refuse) refuse(in.checker_reason, in.checker_number);
@@ -360,15 +361,15 @@ void RegisterFile::step_queue(const Inputs& in, const Setting& setting) {
   state_.queue.clock({in.passed, in.edges, setting}, area);
 }
 
-// What is no live register.
+// All registers that are not live.
 std::uint32_t RegisterFile::read(std::uint32_t address) const {
   constexpr auto kHead = static_cast<std::uint32_t>(Area::CaptureHead);
   const bool of_head = address >= kHead && address < kHead + 4 * CaptureFifo::kWords;
   return of_head ? state_.queue.oldest((address - kHead) / 4) : stored(address);
 }
 
-// The place in its area of the word that is written as the `word`th: the time, the positions from the last one down,
-// then what stands below the time.
+// The position in its area of the `word`th word written: the time, the positions from the last one down, then the
+// words below the time.
 std::size_t RegisterFile::written_at(std::uint32_t word) const {
   const std::size_t time = in_area(reg::time_lo(Area::Snap));
   if (word < 2) return time - word;
@@ -380,7 +381,7 @@ std::size_t RegisterFile::written_at(std::uint32_t word) const {
 void RegisterFile::take_values(const Inputs& in) {
   state_.latched[in_area(reg::fault(Area::Snap))] = in.fault;
   state_.latched[in_area(reg::status(Area::Snap))] = status(in) & ~field::kStatusSnapshot;
-  // REST has the ticks that are left where the others have ratio and rate.
+  // REST holds the ticks left in the place of ratio and rate.
   const bool rest = state_.snapshot.area() == Area::Rest;
   state_.latched[in_area(reg::ratio(Area::Snap))] = rest ? static_cast<std::uint32_t>(in.ticks_left >> 32) : in.ratio;
   state_.latched[in_area(reg::rate(Area::Snap))] = rest ? static_cast<std::uint32_t>(in.ticks_left) : in.rate;
@@ -392,7 +393,7 @@ void RegisterFile::take_values(const Inputs& in) {
     state_.latched[in_area(reg::position(Area::Snap, n))] = in.position[n];
 }
 
-// An answer that is given in this clock. The units are those of the time as it is written down, two clocks late.
+// Passes on the answer of this clock. Units follow the clock counter as the card sees it, two clocks late.
 void RegisterFile::step_link() {
   LinkWatch::Inputs link;
   link.ack = state_.out.ack;

@@ -4,7 +4,7 @@
 
 namespace trammel::model {
 
-// A path on an engine or a direct move whose last tick was taken.
+// True when a path on an engine, or a direct move, has finished after its last tick.
 bool Sequencer::judged(const Inputs& in) const {
   if (!state_.drained || state_.path == Path::None) return false;
   if (state_.path == Path::Engine) return state_.now >= state_.drained_at + kEngineJudged && in.engine_done;
@@ -41,12 +41,13 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.barrier_done = state_.barrier == Barrier::Done;
   d.piece_runs = state_.out.feed_active;
   d.direct = state_.out.direct;
-  // An engine's state is in use until its path's last feed tick has reached it.
+  // The state of an engine is in use until the last feed tick of its path has reached it.
   d.payload_ready = in.payload_ready && !engine_taken();
   return d;
 }
 
-// A barrier's last clock: a WAIT_INPUT's count is a time-out (0: none), a PROBE_END stays for as long as it must.
+// True in a barrier's last clock. The count of a WAIT_INPUT is a time-out (0: none); a PROBE_END waits until it may
+// end.
 bool Sequencer::barrier_over(const Inputs& in) const {
   if (state_.barrier != Barrier::Running) return false;
   if (state_.geometry.is_wait())
@@ -55,7 +56,7 @@ bool Sequencer::barrier_over(const Inputs& in) const {
   return state_.now == state_.barrier_at;
 }
 
-// One queue at a barrier while the other still has ticks to give or to take.
+// True if one queue is at a barrier while the other still has ticks to give or to take.
 bool Sequencer::mismatches() const {
   const bool path_ticks = (state_.path == Path::Line || state_.path == Path::Engine) && !state_.drained;
   const bool geometry_alone = state_.geometry_stands && (state_.out.feed_active || piece_waits());
@@ -89,13 +90,13 @@ void Sequencer::clock(const Inputs& in) {
   ++state_.now;
 }
 
-// What is dropped counts as if it began, but for what never counts and a barrier that has.
+// A dropped command counts as begun. Exceptions: commands that never count, and a barrier that has already counted.
 bool Sequencer::drop_counts(const CommandFetch& fetch, bool dropped) const {
   const bool has_counted = state_.barrier == Barrier::Running || state_.barrier == Barrier::Done;
   return dropped && !fetch.is_instant() && !has_counted;
 }
 
-// Paths and pieces count a clock after their swap shows, barriers as they begin.
+// Paths and pieces are counted one clock after their swap shows, barriers as they begin.
 void Sequencer::count_begun(const Inputs& in, const Decision& d, bool path_drops, bool piece_drops) {
   if (state_.path_begun || d.barrier_begins || path_drops) ++state_.out.geometry_begun;
   if (state_.piece_begun || d.barrier_begins || piece_drops) ++state_.out.feed_begun;
@@ -108,7 +109,7 @@ void Sequencer::clock_ticks(const Inputs& in, bool take) {
   const bool ticking = ticking_path();
   const bool stall = state_.owed > 1;
   state_.out.tick = take;
-  // A silent piece runs in every clock.
+  // During a silent piece every clock is enabled.
   const bool enabled = in.enable || state_.out.silent;
   state_.out.feed_enable = enabled && state_.out.feed_active && ticking && !stall && !in.drives_wait;
   state_.out.feed_clear = !state_.out.feed_active;
@@ -117,7 +118,7 @@ void Sequencer::clock_ticks(const Inputs& in, bool take) {
       state_.out.direct ? in.enable && ticking && !in.drives_wait : in.feed_tick && state_.out.feed_active;
 }
 
-// A decoded barrier with nothing before it that runs.
+// A queue has reached a barrier when it is decoded and nothing before it runs.
 void Sequencer::stand(const Decision& d) {
   const bool geometry_over = d.barrier_done || d.path_dropped;
   const bool feed_over = d.barrier_done || d.piece_dropped;
@@ -126,7 +127,7 @@ void Sequencer::stand(const Decision& d) {
   state_.feed_stands = state_.feed.decoded() && state_.feed.is_barrier() && !state_.out.feed_active && !feed_over;
 }
 
-// The fetches see a command as taken when it begins, a barrier in the clock after its last one.
+// The fetches see a command as taken when it begins; a barrier, in the clock after its last one.
 void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
   if (state_.load.to(load_target::kTicks)) shift_in<48>(state_.path_count, state_.load.word);
   const bool over = d.barrier_done || d.path_dropped || instant() || in.probe_taken;
@@ -138,7 +139,7 @@ void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
       {in.cut, d.piece_begins || d.barrier_done || d.piece_dropped, !d.piece_runs, true, in.feed_empty, in.feed_word});
 }
 
-// From both queues standing at it to the clock in which they go on.
+// From the clock in which both queues have reached the barrier to the one in which they continue.
 void Sequencer::clock_barrier(const Decision& d) {
   if (d.barrier_begins) {
     state_.barrier = Barrier::Running;
@@ -179,7 +180,7 @@ void Sequencer::clock_path(const Inputs& in, const Decision& d) {
     state_.out.ended = true;
 }
 
-// A cut leaves a silence: what was on its way to the axes stays silent.
+// A cut does not end a silence: steps on their way to the axes stay silent.
 void Sequencer::clock_silence(const Inputs& in, const Decision& d) {
   const bool over = state_.settled == kSettleClocks - 1;
   state_.settled = state_.out.silent && !d.piece_runs && in.engine_done && !over ? state_.settled + 1 : 0;
@@ -231,7 +232,7 @@ void Sequencer::clock_streaming(const Inputs& in, const Decision& d) {
   state_.streaming.clock(s);
 }
 
-// What runs is over where it stands, a barrier too, unless it is PROBE_END; what is decoded stays.
+// Ends the path, the piece and the barrier under way, except PROBE_END. Decoded commands stay.
 void Sequencer::halt(const Decision& d) {
   state_.out.direct = state_.out.path_active = state_.out.feed_active = state_.out.moving = state_.out.stale =
       state_.out.spent = false;
@@ -244,7 +245,7 @@ void Sequencer::halt(const Decision& d) {
   state_.out.ended = false;
 }
 
-// Everything decoded or running is gone; the chains keep what they have.
+// Drops all that is decoded or runs; the shift chains keep their contents.
 void Sequencer::cut() {
   const Outputs before = state_.out;
   state_.out = Outputs{};

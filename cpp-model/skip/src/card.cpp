@@ -15,7 +15,7 @@ namespace trammel::skip {
 
 namespace {
 
-// Parts whose next clock changes nothing at the outputs advance by it. Those whose clock costs no more than their
+// A part whose next clock changes no output advances by one clock instead. Parts whose clock costs no more than their
 // horizon are always clocked.
 struct ClockBusy {
   template <class Part>
@@ -57,7 +57,8 @@ std::uint64_t jump(model::CoreModel& core, std::uint64_t limit, const Pins& pins
   if (horizon(s.registers, s.shown) == 0) return 0;
   if (horizon(s.captures, core.capture_inputs()) == 0) return 0;
   const model::CardInputs::Inputs in = core.pin_inputs(pins.inputs);
-  if (core.has_emergency_stop() && s.registers.filling()) return 0;  // a press counts when that is over
+  if (core.has_emergency_stop() && s.registers.filling())
+    return 0;  // an active emergency stop takes effect only after that
   if (core.has_emergency_stop() && horizon(s.emergency_stop, core.emergency_inputs(pins.emergency_stop)) == 0) return 0;
   limit = std::min({limit, horizon(s.inputs, in), horizon(s.registers, s.shown)});
   if (limit == 0) return 0;

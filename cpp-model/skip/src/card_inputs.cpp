@@ -7,17 +7,17 @@ namespace {
 using model::InputFilter;
 using model::RoleScan;
 
-// Clocks from a state in clock `clock` of its scan to the one before the next look at an input, 0 to 63.
+// Clocks from clock `clock` of the scan to the one before the next look at the input, 0 to 63.
 std::uint64_t until_look(unsigned clock, unsigned input) {
   return (2 * input + 2 + 2 * InputFilter::kScanClocks - clock) % InputFilter::kScanClocks;
 }
 
-// Clocks after which an input that stays where it is has passed, or is quiet.
+// Clocks after which an input that keeps its level has passed, or is quiet.
 std::uint64_t until_pass(const InputFilter& block, unsigned input, bool differs) {
   const InputFilter::State& s = block.state();
   const bool steady = ((differs ? s.differed : s.agreed) >> input & 1) != 0;
   const unsigned next = steady ? s.counts[input] + 1U : 0;  // the count of the next look
-  // An input that agrees must have done so at a look before.
+  // An input that agrees with its output must have agreed at a look before.
   const unsigned length = differs || steady ? s.lengths[input] : std::max<unsigned>(s.lengths[input], 1);
   const std::uint64_t looks = next >= length ? 0 : length - next;
   return until_look(s.clock, input) + looks * InputFilter::kScanClocks + 1;
@@ -32,7 +32,7 @@ std::uint64_t horizon(const InputFilter& block, const InputFilter::Inputs& in) {
   if ((differs & s.quiet) != 0) return 0;
   const std::uint32_t waits = differs | (block.tells_quiet() ? ~s.quiet : 0);
   if (waits == 0) return kForever;
-  // A length that was just set counts from the second clock on.
+  // A new length takes effect from the second clock on.
   const unsigned next = s.clock / 2;
   if (s.length_read[1] != s.lengths[(next + InputFilter::kInputs - 1) % InputFilter::kInputs]) return 0;
   if (s.clock % 2 != 0 && s.length_read[0] != s.lengths[next]) return 0;
@@ -47,7 +47,8 @@ void advance(InputFilter& block, const InputFilter::Inputs& in, std::uint64_t cl
   if (clocks == 0) return;
   InputFilter::State& s = block.state();
   const std::uint32_t differs = in.levels ^ s.levels;
-  // Each look counts an input that differs, or is not quiet yet, once more, and begins the count of the others anew.
+  // Each look increments the count of an input that differs, or is not quiet yet, and clears the counts of the
+  // others.
   for (unsigned input = 0; input < InputFilter::kInputs; ++input) {
     const std::uint64_t first = until_look(s.clock, input);
     if (first >= clocks) continue;

@@ -6,9 +6,9 @@ namespace trammel::skip {
 
 namespace {
 
-// Carries at a time, so that phases do not leave 64 bits.
+// Carries handled at a time, so that the sums of phases fit in 64 bits.
 constexpr std::uint64_t kMaxCarries = std::uint64_t{1} << 14;
-// Updates for which the clamp is judged at once.
+// Updates for which one check of the clamp is enough.
 constexpr std::uint64_t kStretch = 64;
 
 }  // namespace
@@ -59,7 +59,7 @@ void FeedAhead::advance_varying(Advanced& gone, std::uint64_t limit, std::uint64
   s_.phase = sum & (model::FeedGenerator::kOne - 1);
 }
 
-// Rate and its difference stay between floor and 1 for so many updates.
+// True if rate and acceleration keep the slope between the floor and 1 for this number of updates.
 bool FeedAhead::unclamped_for(std::uint64_t updates) const {
   const auto negative = [](model::uint128 value) { return value >> 127 != 0; };
   const auto magnitude = [&](model::uint128 value) { return negative(value) ? model::uint128{0} - value : value; };
@@ -69,7 +69,7 @@ bool FeedAhead::unclamped_for(std::uint64_t updates) const {
   return s_.rate >= span + s_.floor_rate && (s_.rate + span) >> 64 == 0;
 }
 
-// Updates without a carry that reaches the target, from a count of 0. The hot loop of a changing rate.
+// Passes updates from a count of 0, up to the one that would reach the target. The hot loop of a changing rate.
 std::uint64_t FeedAhead::whole_updates(std::uint64_t& sum, std::uint64_t target, std::uint64_t most) {
   std::uint64_t gone = 0;
   while (gone < most && unclamped_for(kStretch)) {

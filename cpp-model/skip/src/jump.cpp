@@ -16,8 +16,8 @@ namespace trammel::skip {
 
 namespace {
 
-constexpr unsigned kTakenBits = 0x1E0;      // in flight: taken, but not yet at the axes
-constexpr unsigned kPrescaledBits = 0x1C0;  // at the prescaler, but not yet at the axes
+constexpr unsigned kTakenBits = 0x1E0;      // bits of in_flight: taken, but not yet at the axes
+constexpr unsigned kPrescaledBits = 0x1C0;  // bits of in_flight: at the prescaler, but not yet at the axes
 
 std::uint64_t count(unsigned bits) {
   std::uint64_t ones = 0;
@@ -25,12 +25,12 @@ std::uint64_t count(unsigned bits) {
   return ones;
 }
 
-// Clocks for which the ratio is known ahead, 0 where it is not.
+// Clocks for which the ratio is known in advance; 0 if it is not.
 std::uint64_t ratio_known_for(model::MotionCore& core) {
   return TimeBaseAhead(core.state().time_base).clocks_ahead(core.time_inputs());
 }
 
-// A step of a tick taken `clocks_ago` clocks ago that is not yet at the shaper, placed in flight.
+// Puts the step of a tick taken `clocks_ago` clocks ago in flight; it is not yet at the shaper.
 void place_step(model::Axis& axis, std::uint64_t clocks_ago, bool backwards) {
   model::Axis::State& s = axis.state();
   PulsesAhead(s.generator).place_step(clocks_ago, backwards);
@@ -38,7 +38,7 @@ void place_step(model::Axis& axis, std::uint64_t clocks_ago, bool backwards) {
   if (clocks_ago >= 3) s.path_dir = backwards;
 }
 
-// Nothing on its way to the shaper, and there no step that waits.
+// True if no step is on its way to the shaper, and none waits there.
 bool ready_to_jump(model::Axis& axis) {
   model::Axis::State& s = axis.state();
   return at_rest(s.generator) && !s.path_step && no_step_waits(s.shaper) && s.times.mode == s.shaper.state().mode &&
@@ -75,13 +75,13 @@ std::uint64_t Jump::go() {
   return static_cast<std::uint64_t>(end_);
 }
 
-// Accumulations of the feed generator at edges 1 .. `edge`: the enables on their way come first.
+// Accumulations of the feed generator at edges 1 .. `edge`. The enables on their way at the start come first.
 std::uint64_t Jump::accumulations_to(std::int64_t edge) const {
   if (edge < 2) return edge < 1 ? 0 : first_;
   return first_ + second_ + TimeBaseAhead(core_.state().time_base).enabled_in(static_cast<std::uint64_t>(edge - 2));
 }
 
-// The edge of an accumulation, from 1.
+// The edge of an accumulation; accumulations are numbered from 1.
 std::int64_t Jump::edge_of(std::uint64_t accumulation) const {
   if (accumulation <= first_) return 1;
   if (accumulation <= first_ + second_) return 2;
@@ -89,7 +89,7 @@ std::int64_t Jump::edge_of(std::uint64_t accumulation) const {
          static_cast<std::int64_t>(TimeBaseAhead(core_.state().time_base).clocks_for(accumulation - first_ - second_));
 }
 
-// The first tick that must not be taken, or not reach the prescaler.
+// The first tick that must not be taken, or must not reach the prescaler.
 std::uint64_t Jump::first_that_stops() const {
   std::uint64_t left = core_.state().sequencer.ticks_left();
   if (core_.guards()) left = std::min(left, ticks_to_change(core_.state().guard));
@@ -99,7 +99,7 @@ std::uint64_t Jump::first_that_stops() const {
   return std::min(last, stops + count(in_flight_ & kPrescaledBits));
 }
 
-// The axis's next step: after t.ticks ticks of its own, as the generator stands.
+// Finds the axis's next step, from the present state of the generator, which has passed t.ticks ticks.
 void Jump::look_ahead(AxisCursor& t, model::PulseGenerator& generator) const {
   const std::uint64_t silent = PulsesAhead(generator).silent_ticks();
   t.next = kNever;
@@ -129,7 +129,8 @@ void Jump::walk() {
       return;
     if (next == stop) return stop_before(stop);
     const std::int64_t arrival = edge + to_axis_;
-    // Ticks are a clock apart at least; one that comes later than this may stop before this one's arrival.
+    // Ticks are at least one clock apart. If the stop is at least this many ticks away, it comes after this tick's
+    // arrival.
     const bool close = stop - next < static_cast<std::uint64_t>(to_axis_ - kLastTake);
     if (close || arrival > end_) stop_before(stop);
     if (arrival > end_) return;
@@ -147,7 +148,7 @@ void Jump::walk() {
   }
 }
 
-// Ends before a tick that must not be taken.
+// Ends the jump before a tick that must not be taken.
 void Jump::stop_before(std::uint64_t tick) {
   model::FeedGenerator generator;
   std::uint64_t done = 0;
@@ -159,7 +160,7 @@ void Jump::stop_before(std::uint64_t tick) {
   end_ = std::min(end_, edge + kLastTake);
 }
 
-// Where a tick is made, and the generator there; false when that is after the end.
+// Finds the edge at which a tick is made, and the generator's state there; false if that is after the end.
 bool Jump::find(std::uint64_t tick, model::FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const {
   generator = core_.state().feed;
   const std::uint64_t wanted = tick - flying_ - made_;
@@ -170,7 +171,7 @@ bool Jump::find(std::uint64_t tick, model::FeedGenerator& generator, std::uint64
   return true;
 }
 
-// All axes that this tick makes a step on; none where one of them may not.
+// Makes the steps of this tick on all its axes; returns false and makes none if one axis may not step.
 bool Jump::step_all(std::uint64_t tick, std::int64_t arrival) {
   std::array<std::int64_t, card_map::kMaxAxes> served;
   std::array<model::StepShaper, card_map::kMaxAxes> after;
@@ -185,7 +186,7 @@ bool Jump::step_all(std::uint64_t tick, std::int64_t arrival) {
   return true;
 }
 
-// The step's pulse, when it is the only one under way and cannot be late at a wait tick.
+// Computes the pulse of a step. True if it is the only one under way and cannot be late at a wait tick.
 bool Jump::may_step(unsigned axis, std::int64_t arrival, model::StepShaper& after, std::int64_t& served) const {
   const AxisCursor& t = cursors_[axis];
   if (t.under_way && t.served >= arrival) return false;
@@ -230,7 +231,7 @@ void Jump::step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::in
   next_report_ = std::min({next_report_, arrival + kToPath, served});
 }
 
-// Reports in order of time, pins before the path, then by axis.
+// Reports in order of time: at the same time pins before the path, then by axis.
 void Jump::report_until(std::int64_t edge) {
   while (next_report_ <= edge) {
     std::int64_t first = INT64_MAX;
@@ -262,7 +263,7 @@ void Jump::report_until(std::int64_t edge) {
   }
 }
 
-// Up to this edge, where these axes make pulses, all within their limits.
+// Advances the soft limits to this edge, at which these axes make pulses, all of them within their limits.
 void Jump::look_at_limits(std::int64_t edge, std::uint8_t counts, std::uint8_t back) {
   model::SoftLimits& limits = core_.state().soft_limits;
   pass(limits, static_cast<std::uint64_t>(edge - looked_until_) - 1);
@@ -303,7 +304,8 @@ void Jump::commit() {
   core_.state().out.engine_step = 0;
 }
 
-// The generator at the end; the last clocks one by one, for what is in flight: bit k from the edge k before the end.
+// Brings the generator to the end of the jump. The last clocks run one by one, to find the ticks in flight; bit k of
+// the result belongs to the edge k before the end.
 unsigned Jump::commit_generator() {
   constexpr std::int64_t kTail = 10;
   unsigned in_flight = edge_ == 0 ? in_flight_ : 1;
@@ -328,7 +330,7 @@ unsigned Jump::commit_generator() {
   return in_flight;
 }
 
-// Path ticks at the axes, of the feed ticks that the prescaler has taken.
+// Passes the feed ticks that the prescaler has taken; returns the path ticks at the axes.
 std::uint64_t Jump::commit_chords(std::uint64_t prescaled, unsigned in_flight) {
   const EngineTicks::PathTicks made = EngineTicks(core_.state().engines).jump_chords(prescaled, in_flight);
   record_.take_path_ticks(made.at_axes);
@@ -336,7 +338,7 @@ std::uint64_t Jump::commit_chords(std::uint64_t prescaled, unsigned in_flight) {
   return made.at_axes;
 }
 
-// The record of the ticks that are taken and not yet at the axes.
+// Records the ticks that are taken and not yet at the axes.
 void Jump::place_takes(unsigned in_flight) {
   std::uint64_t tick = record_.taken();
   for (unsigned k = kTaken; k < static_cast<unsigned>(to_axis_); ++k) {
@@ -378,7 +380,7 @@ void Jump::commit_axis(unsigned axis, std::uint64_t ticks) {
 
 namespace {
 
-// Neither causes nor buttons change. While a limit is active each step is looked at.
+// True if neither causes nor buttons change. While a limit is active, each step must be checked.
 bool limits_rest(model::MotionCore& core, const model::MotionCore::Inputs& in) {
   const bool pressed = (in.roles.limit_minus | in.roles.limit_plus) != 0;
   if (pressed && core.state().sequencer.ticking()) return false;
@@ -389,7 +391,7 @@ model::PathCommands::Inputs commands_of(model::MotionCore& core, const model::Mo
   return core.command_inputs(in, core.stop_inputs(in, core.sequencer_inputs(in, core.probe_inputs(in))));
 }
 
-// Nothing is decided, and no host is at work.
+// True if nothing is decided and the host makes no access.
 bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
   model::MotionCore::State& m = core.state();
   const model::Sequencer::Outputs& s = m.sequencer.outputs();
@@ -411,7 +413,7 @@ bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
     return false;
   if (s.idle && m.out.axis_busy != 0) return false;
   const model::Sequencer::Inputs sequencer = core.sequencer_inputs(in, core.probe_inputs(in));
-  // At rest a pulse under way may end within the jump, and the clocks without one are counted from there.
+  // At rest a pulse under way may end within the jump; the clocks without a pulse are counted from its end.
   const model::StopControl::Inputs stop = core.stop_inputs(in, sequencer);
   if (horizon(m.commands, core.command_inputs(in, stop)) == 0) return false;
   if (horizon(m.stop, stop) == 0 || ((stop.at_rest || m.stop.shut()) && !m.stop.settled())) return false;

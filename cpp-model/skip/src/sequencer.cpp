@@ -6,7 +6,7 @@ using model::Sequencer;
 
 namespace {
 
-// Nothing but a tick, an enable or a pop moves a fetch; one that waits looks at payload_ready.
+// True if only a tick, an enable or a pop can change the fetch. A waiting fetch also depends on payload_ready.
 bool at_rest(const model::CommandFetch& fetch) {
   using Mode = model::CommandFetch::Mode;
   const model::CommandFetch::State& s = fetch.state();
@@ -14,7 +14,7 @@ bool at_rest(const model::CommandFetch& fetch) {
          (s.mode == Mode::Idle || s.mode == Mode::Decoded || s.mode == Mode::Waiting);
 }
 
-// With inputs as these nothing is decided but ticks, and a dwell's end.
+// True if these inputs decide nothing except ticks and the end of a dwell.
 bool counts_only(const model::Sequencer& block, const model::Sequencer::Inputs& in) {
   const model::Sequencer::State& s = block.state();
   const bool nothing_shows = !(s.out.swap || s.out.feed_swap || s.out.mismatch || s.out.incomplete || s.out.over) &&

@@ -1,6 +1,6 @@
-// Every line and every arc of small curves on the RTL, both directions: the number of steps is the driver's, the end is
-// the commanded one, and no point strays farther than the rule's bound. Where 8 directions are built in
-// (TRAMMEL_EIGHT), by both rules.
+// Every line and every arc of small curves on the RTL, in both directions: the number of steps equals the driver's,
+// the end is the commanded one, and no point is farther away than the rule's bound. If 8 directions are built in
+// (TRAMMEL_EIGHT), both rules are tested.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ class Accumulator {
 
   bool at_end() { return dut_->ready_o && dut_->at_end_o; }
 
-  // One tick and the clocks until the next.
+  // One tick, and the clocks until the next one.
   void tick() {
     dut_->tick_i = 1;
     for (int clock = 0; clock < period_; ++clock) {
@@ -88,7 +88,7 @@ class Accumulator {
   int period_ = 9;  // clocks
 };
 
-// Walks and calls `see` at every point; false when the steps are not exactly `steps` or the end is another.
+// Walks and calls `see` at every point; false if the number of steps is not `steps`, or the end is wrong.
 template <class See>
 bool walk(Accumulator& accumulator, const ArcCommand& arc, std::uint64_t steps, const See& see) {
   accumulator.start(arc);
@@ -100,7 +100,7 @@ bool walk(Accumulator& accumulator, const ArcCommand& arc, std::uint64_t steps, 
   return accumulator.at_end() && accumulator.position() == Point(arc.end_x, arc.end_y);
 }
 
-// The ellipse's points, rounded.
+// The points of the ellipse, rounded.
 std::vector<Point> points(int a, int b) {
   std::set<Point> found;
   const int samples = 64 * (a + b);
@@ -112,7 +112,7 @@ std::vector<Point> points(int a, int b) {
   return {found.begin(), found.end()};
 }
 
-// The angle from start to end in the arc's direction; a full turn for the same point.
+// The angle from start to end in the arc's direction; a full turn if both points are the same.
 double sweep_between(const Point& start, const Point& end, bool clockwise) {
   double sweep = std::atan2(end.second, end.first) - std::atan2(start.second, start.first);
   if (clockwise) sweep = -sweep;
@@ -137,7 +137,7 @@ TEST(EveryLine, TakesSteersSteps) {
       line.clockwise = sx * sy > 0;
       line.end_x = dx;
       line.end_y = dy;
-      int f = std::abs(dx) - std::abs(dy);  // STEER's, beside it
+      int f = std::abs(dx) - std::abs(dy);  // STEER's F, computed for comparison
       Point steer{0, 0};
       const auto see = [&](const Point& at) {
         const bool in_x = f > 0;
@@ -157,9 +157,9 @@ TEST(EveryLine, TakesSteersSteps) {
   RecordProperty("largest_distance", std::to_string(worst));
 }
 
-constexpr double kMinRadius = 1.5;  // pulses, of the driver's arcs in 4 directions
+constexpr double kMinRadius = 1.5;  // pulses, for the driver's arcs in 4 directions
 
-// Every arc between rounded points of a circle, by one rule.
+// Every arc between rounded points of a circle, with one rule.
 void expect_arcs_of_circle(Accumulator& accumulator, int r, StepRule rule, int& arcs) {
   double worst = 0;
   const auto expect = [&](const Point& start, const Point& end, bool clockwise) {
@@ -172,7 +172,7 @@ void expect_arcs_of_circle(Accumulator& accumulator, int r, StepRule rule, int& 
     geometry.sweep = sweep_between(start, end, clockwise);
     const double first = std::hypot(start.first, start.second);
     const double second = std::hypot(end.first, end.second);
-    // The driver refuses what may come near the centre (arc.hpp); only r = 2 has such points.
+    // The driver refuses arcs that may come near the centre (arc.hpp); only r = 2 has such points.
     if (rule == StepRule::kFourDirections && first + second < 2 * kMinRadius) {
       EXPECT_EQ(r, 2);
       EXPECT_THROW(driver::prepare(geometry, rule), std::invalid_argument);
@@ -193,7 +193,7 @@ void expect_arcs_of_circle(Accumulator& accumulator, int r, StepRule rule, int& 
       for (const bool clockwise : {false, true}) ASSERT_NO_FATAL_FAILURE(expect(start, end, clockwise));
     }
   }
-  // Outside the ring between start's and end's radius.
+  // The distance outside the ring between the radii of start and end.
   EXPECT_LE(worst, rule == StepRule::kEightDirections ? 0.6 : 1 + 0.3 / r) << "r " << r;
 }
 
@@ -208,7 +208,7 @@ TEST(EveryArc, OfSmallCirclesStaysNearAndEnds) {
   RecordProperty("arcs", std::to_string(arcs));
 }
 
-// Every arc between rounded points of an ellipse, by one rule.
+// Every arc between rounded points of an ellipse, with one rule.
 void expect_arcs_of_ellipse(Accumulator& accumulator, int a, int b, StepRule rule, int& arcs) {
   const auto expect = [&](const Point& start, const Point& end, bool clockwise) {
     driver::EllipseGeometry geometry;

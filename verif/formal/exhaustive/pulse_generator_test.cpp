@@ -23,7 +23,8 @@ class Generator {
   }
 
   void load(int increment, bool mirror) {
-    // The chain has three halfwords, of which 10 bits have a meaning here: they come first, hence lowest.
+    // The chain has three halfwords, of which only 10 bits are used here: they are in the lowest halfword, which
+    // comes first.
     dut_->load_increment_i = 1;
     dut_->word_i = static_cast<std::uint16_t>(increment);
     clock();
@@ -78,9 +79,9 @@ int increment_of(int p, int l) {
   return p < 0 ? -rounded : rounded;
 }
 
-constexpr int kLatency = 2;  // a tick's step is there two clocks after the tick's own
+constexpr int kLatency = 2;  // clocks from a tick to its step
 
-// True when the line went as the closed form says.
+// True if the line followed the closed form.
 bool line_holds(Generator& generator, int p, int l, bool mirror) {
   const int increment = increment_of(p, l);
   const int half = kOne / 2 - (mirror && increment < 0 ? 1 : 0);
@@ -102,7 +103,7 @@ bool counted_line_holds(Generator& generator, int p, int l, int count) {
   generator.load(increment_of(p, l), false);
   generator.load_count(count);
   generator.swap(true);
-  // Twice as long as the line lasts: the increments go on, the steps must not.
+  // Twice as long as the line lasts: the increments continue, but there must be no more steps.
   for (int clock = 0; clock < 2 * l; ++clock) generator.tick(true);
   for (int clock = 0; clock < kLatency; ++clock) generator.tick(false);
   if (std::abs(generator.position()) != count || generator.live()) return false;
@@ -116,7 +117,7 @@ TEST(EveryLine, IsTheClosedForm) {
   for (int l = 1; l < kOne; ++l) {
     for (int p = -l; p <= l; ++p) {
       for (const bool mirror : {false, true}) {
-        if (mirror && p >= 0) continue;  // the same preset
+        if (mirror && p >= 0) continue;  // the preset of both is the same
         ++lines;
         ASSERT_TRUE(line_holds(generator, p, l, mirror)) << p << " pulses in " << l << " ticks, mirror " << mirror;
       }

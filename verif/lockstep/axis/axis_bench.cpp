@@ -1,4 +1,5 @@
-// Cycles a second of the pulse generator's lockstep with the checker on: two edges of RTL, the model and 3 comparisons.
+// Speed of the pulse generator's lockstep with the checker on, in cycles: two edges of RTL, the model and 3
+// comparisons.
 #include <benchmark/benchmark.h>
 
 #include "pulse_generator_bench.hpp"
@@ -7,7 +8,7 @@ namespace {
 
 using trammel::lockstep::PulseGeneratorBench;
 
-// A line of `increment` / 2^40 pulses a tick at a tick every clock.
+// A line of `increment` / 2^40 pulses per tick, with a tick in every clock.
 void lockstep_pulse_generator(benchmark::State& state) {
   PulseGeneratorBench bench(0);
   bench.load_increment(state.range(0));

@@ -1,4 +1,4 @@
-// Lockstep of a whole axis: lines, counted lines, an engine's steps, settings in mid pulse, cuts and resets at any
+// Lockstep of a whole axis: lines, counted lines, steps of an engine, settings during a pulse, cuts and resets at any
 // clock, and its word of the snapshot; every output in every cycle.
 #include "trammel/model/axis.hpp"
 
@@ -22,13 +22,13 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("axis", seed), dice_(seed) { reset(); }
 
-  // A line, counted or not, or a stretch of an engine's steps, with settings of its own.
+  // A line, counted or not, or a sequence of engine steps, with its own settings.
   void path() {
     if (dice_.chance(3)) settings();
     const bool engine = dice_.chance(4);
     const bool direct = !engine && dice_.chance(3);
     const std::int64_t top = std::int64_t{1} << (30 + dice_.below(11));
-    // A power of two meets the half pulse exactly, where a line and its mirror image differ.
+    // A power of two meets the half pulse exactly; there a line and its mirror image differ.
     const std::int64_t magnitude = dice_.chance(4) ? top : static_cast<std::int64_t>(dice_.word() >> 24) % (top + 1);
     send(increment(kAxis), static_cast<std::uint64_t>(dice_.chance(2) ? magnitude : -magnitude), 3);
     if (direct) send(count(kAxis), dice_.below(30), 2);
@@ -37,7 +37,7 @@ class Bench {
     in_.direct = direct;
     clock();
     in_.swap = false;
-    // The old line's steps leave the generator before the engine's first one.
+    // The steps of the old line leave the generator before the engine's first one.
     for (int i = 0; i < 3; ++i) clock();
     if (!engine && !direct) chords(top);
     run(engine, 1 + dice_.below(20), 20 + dice_.below(500));
@@ -50,7 +50,7 @@ class Bench {
   std::uint64_t chained() const { return chained_; }
 
  private:
-  // An arc: increments that come as chords, while ticks go on.
+  // An arc: increments that come as chords, while ticks continue.
   void chords(std::int64_t top) {
     const unsigned every = 1 + dice_.below(4);
     for (unsigned left = dice_.below(6); left != 0; --left) {
@@ -61,7 +61,7 @@ class Bench {
         in_.chord_word = static_cast<std::uint16_t>(static_cast<std::uint64_t>(increment) >> (16 * i));
         tick(every);
         in_.chord_load = false;
-        // Words without a load, and the load bus's for others, are nobody's.
+        // Words without a load, and words on the load bus for another axis, must have no effect.
         in_.chord_word = static_cast<std::uint16_t>(dice_.draw());
         in_.load = halfword(model::load_target::increment(other_axis()), dice_.word(), 0);
         if (dice_.chance(3)) tick(every);
@@ -94,7 +94,7 @@ class Bench {
     in_.engine_step = in_.tick = in_.silent = false;
   }
 
-  // Beside whatever else there is in this clock, swaps included.
+  // Cuts, with random other inputs in this clock, including swaps.
   void cut() {
     check_.event("cut");
     in_.cut = true;
@@ -104,7 +104,7 @@ class Bench {
     for (int i = 0; i < 3; ++i) clock();
   }
 
-  // One clock; the pins stand at the strap's level.
+  // One clock; the pins have the levels of the strap.
   void reset() {
     check_.event("reset");
     const unsigned idle_level = dice_.below(4);
@@ -119,7 +119,7 @@ class Bench {
     in_ = {};
   }
 
-  // One setting of this axis, of a neighbour, or of nobody.
+  // One setting of this axis, of a neighbour, or of no axis.
   void settings() {
     const unsigned axis = dice_.chance(4) ? dice_.below(8) : kAxis;
     const unsigned times = 1U << dice_.below(5);
@@ -147,13 +147,13 @@ class Bench {
     for (unsigned i = 0; i < halfwords; ++i) {
       in_.load = halfword(target, value, i);
       clock();
-      // What goes to another axis or chain is not this one's.
+      // Halfwords for another axis or chain must have no effect here.
       if (dice_.chance(3)) {
         in_.load = halfword(other_target(target), dice_.word(), 0);
         clock();
       }
     }
-    // The path domain swaps three clocks after the last halfword at the earliest; the RTL takes it a clock late.
+    // The path domain swaps at least three clocks after the last halfword; the RTL takes it one clock late.
     in_.load = {};
     clock();
   }

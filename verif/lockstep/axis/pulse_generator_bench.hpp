@@ -1,4 +1,4 @@
-// The pulse generator and its golden model side by side: one call a clock, every output compared after every edge.
+// The pulse generator beside its golden model: one call per clock, every output compared after every edge.
 #pragma once
 
 #include <Vdut.h>
@@ -16,7 +16,7 @@ class PulseGeneratorBench {
 
   explicit PulseGeneratorBench(std::uint64_t seed) : check_("pulse_generator", seed) { reset(Inputs{}); }
 
-  // One clock of reset, whatever else comes in it.
+  // One clock of reset, with these other inputs.
   void reset(const Inputs& in) {
     check_.event("reset");
     apply(in);
@@ -35,7 +35,7 @@ class PulseGeneratorBench {
     steps_ += model_.outputs().step ? 1U : 0U;
   }
 
-  // Shifts an increment (2^-40 pulses a tick) in, ticking on with `tick`.
+  // Shifts an increment (2^-40 pulses per tick) in; with `tick`, ticks continue.
   void load_increment(std::int64_t increment, bool tick = false) {
     check_.event("increment", static_cast<std::uint64_t>(increment));
     for (int i = 0; i < 3; ++i) {
@@ -70,7 +70,7 @@ class PulseGeneratorBench {
 
   Checker& check() { return check_; }
   const model::PulseGenerator& model() const { return model_; }
-  std::uint64_t steps() const { return steps_; }  // since reset
+  std::uint64_t steps() const { return steps_; }  // steps since reset
 
  private:
   void compare() {

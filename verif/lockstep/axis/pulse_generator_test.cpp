@@ -1,4 +1,4 @@
-// Lockstep of the pulse generator: directed corners and random lines, every output in every cycle.
+// Lockstep of the pulse generator: directed corner cases and random lines, every output in every cycle.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,7 +9,7 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr std::int64_t kOne = std::int64_t{1} << 40;
-constexpr bool kCounted = TRAMMEL_COUNTED != 0;  // lines may end at a count
+constexpr bool kCounted = TRAMMEL_COUNTED != 0;  // the generator has a count that can end a line
 
 PulseGeneratorBench::Inputs swap_in(bool active, bool counted, bool mirror, bool tick) {
   PulseGeneratorBench::Inputs in;
@@ -21,7 +21,8 @@ PulseGeneratorBench::Inputs swap_in(bool active, bool counted, bool mirror, bool
   return in;
 }
 
-// Largest increments, both ways, at a tick every clock: a step every clock, and exactly the count.
+// The largest increments in both directions, with a tick in every clock: a step in every clock, and exactly the
+// count.
 void full_rate() {
   if (!kCounted) return;
   PulseGeneratorBench bench(0);
@@ -41,7 +42,7 @@ void full_rate() {
   EXPECT_GT(bench.check().cycles(), 250'000U);
 }
 
-// A line and its mirror image whose phases touch exactly one half and zero, swapped without a gap.
+// A line and its mirror image whose phases meet exactly one half and zero, swapped without a gap.
 void seams() {
   PulseGeneratorBench bench(0);
   for (int repeat = 0; repeat < 2000; ++repeat) {
@@ -55,8 +56,8 @@ void seams() {
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 3);
 }
 
-// Chords: the increment turns in the clock of the swap that keeps the phase, forwards and backwards, at a tick every
-// clock and with the carry between the halves on its way.
+// Chords: the increment changes with the swap that keeps the phase, forwards and backwards, with a tick in every
+// clock and while the carry between the halves is on its way.
 void chords() {
   PulseGeneratorBench bench(0);
   for (int repeat = 0; repeat < 500; ++repeat) {
@@ -87,13 +88,13 @@ class Random {
     if (counted_) bench_.load_count(below(4) == 0 ? below(3) : below(60), tick());
     bench_.clock(swap_in(kind != 7, counted_, below(2) == 0, tick()));
     if (!counted_ && below(3) == 0) arc();
-    if (below(6) == 0) {  // with the swap, or the first step, still on its way
+    if (below(6) == 0) {  // while the swap, or the first step, is still on its way
       run(below(6));
       return abort();
     }
     run(2 + below(150));
     if (!counted_) return;
-    // A counted line ends before the next: at its count, or by an abort.
+    // A counted line ends before the next one: at its count, or by an abort.
     const unsigned clocks = below(400);
     for (unsigned i = 0; i < clocks && bench_.model().outputs().live; ++i) run(1);
     if (bench_.model().outputs().live) abort();
@@ -102,7 +103,7 @@ class Random {
   PulseGeneratorBench& bench() { return bench_; }
 
  private:
-  // Further increments, each taken by a chord; the phase goes on.
+  // Further increments, each taken by a chord; the phase continues.
   void arc() {
     for (unsigned left = below(6); left != 0; --left) {
       run(2 + below(40));

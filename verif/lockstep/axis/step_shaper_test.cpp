@@ -17,7 +17,7 @@ class Bench {
 
   explicit Bench(std::uint64_t seed) : check_("step_shaper", seed), random_(seed) { reset(Inputs{}); }
 
-  // One clock of reset, whatever else comes in it. The strap that says how the pins stand then is drawn anew.
+  // One clock of reset, with these other inputs. The strap for the levels of the pins in reset is random.
   void reset(const Inputs& in) {
     check_.event("reset");
     const unsigned idle_level = below(4);
@@ -39,7 +39,7 @@ class Bench {
     if (model_.outputs().fault) ++faulty_;
   }
 
-  // A stretch with one choice of times, mode and densities; times may change in its middle.
+  // A stretch with one choice of times, mode and densities; the times may change in the middle.
   void stretch(unsigned clocks) {
     Inputs in;
     const unsigned every = 1 + below(40);
@@ -65,8 +65,8 @@ class Bench {
   const model::StepShaper& model() const { return model_; }
 
  private:
-  // Some steps on either side of a power of two, 2^32 with them. The port is the register itself; of the position the
-  // pins show the two low bits, which stay.
+  // Moves the position to a few steps on either side of a power of two, including 2^32. The port is the register
+  // itself. The pins show the two low bits of the position, which do not change.
   void position_near_a_carry() {
     const std::uint32_t position = (1U << below(32)) * below(2) + below(9) - 4;
     position_ahead_ = (position - model_.outputs().position) & ~3U;
@@ -107,11 +107,11 @@ class Bench {
   model::StepShaper model_;
   Checker check_;
   std::mt19937_64 random_;
-  std::uint32_t position_ahead_ = 0;  // of the model, in the RTL
+  std::uint32_t position_ahead_ = 0;  // the RTL's position minus the model's
   std::uint64_t faulty_ = 0;
 };
 
-// The largest times, one by one: every phase ends.
+// The largest times, one at a time: every phase must end.
 void longest_times() {
   Bench bench(0);
   for (int which = 0; which < 4; ++which) {

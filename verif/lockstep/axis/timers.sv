@@ -1,4 +1,4 @@
-// The timers that stand beside the axes, as one top for their lockstep.
+// The timers beside the axes, as one top for their lockstep.
 `default_nettype none
 
 module timers (

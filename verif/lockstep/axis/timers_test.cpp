@@ -1,5 +1,5 @@
-// Lockstep of the wait timer, and of the busy timer beside its closed form: busy a clock after any of the last 11
-// clocks in which something ran.
+// Lockstep of the wait timer; and of the busy timer with its closed form: busy in a clock if something ran in any of
+// the last 11 clocks before it.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("timers", seed), dice_(seed) { reset(); }
 
-  // One clock of reset: every limit is the map's again, the count 0.
+  // One clock of reset: the limit has the value of the register map again, and the count is 0.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -67,7 +67,8 @@ class Bench {
   std::uint64_t ticks_ = 0;
 };
 
-// The limit of reset, then each from 1 to 300 and those at the end of 16 bits, for two periods and a bit.
+// The limit after reset, then each limit from 1 to 300 and those at the end of 16 bits, for a little more than two
+// periods.
 void every_limit() {
   Bench bench(1);
   std::uint64_t cycles = 1;
@@ -94,7 +95,7 @@ void every_limit() {
   EXPECT_EQ(bench.check().comparisons(), kComparedSignals * cycles);
 }
 
-// Limits that change in mid count, to below the count too, and other settings.
+// Limits that change during a count, also to below the count, and other settings.
 void random_limits() {
   Bench bench(seed_from_environment(20261120));
   Dice& dice = bench.dice();
@@ -106,7 +107,7 @@ void random_limits() {
     } else if (dice.chance(50)) {
       bench.limit(1 + static_cast<std::uint32_t>(dice.log_uniform(dice.chance(20) ? 16 : 8)) % 0xFFFF);
     } else if (dice.chance(50)) {
-      // Any other setting, and the limit's own address without one.
+      // Another setting, or the limit's own address without `set`.
       const std::uint32_t word = dice.below(10);
       bench.clock({word != 0 && dice.chance(2), card_map::reg::kHoldLimit + 4 * word, dice.draw()});
     } else {

@@ -1,5 +1,5 @@
-// A board's top, or its card without the PLL, around a card that only shows its pins: when the reset ends, what the
-// pins show before, and that each signal comes to its pin.
+// A board's top, or its card without the PLL, around a stand-in card that only shows its pins. Checks when the reset
+// ends, the levels of the pins before that, and the connection of each signal to its pin.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -12,23 +12,23 @@
 namespace trammel::lockstep {
 namespace {
 
-// All pins of a kind.
+// Masks of all pins of a kind.
 constexpr std::uint32_t kAxes = (1U << TRAMMEL_AXES) - 1;
 constexpr std::uint32_t kInputs = (1U << TRAMMEL_INPUTS) - 1;
 constexpr std::uint32_t kOutputs = (1U << TRAMMEL_OUTPUTS) - 1;
 constexpr std::uint32_t kResetClocks = (1U << TRAMMEL_RESET_BITS) + 2;
 constexpr std::uint64_t kWho = std::uint64_t{TRAMMEL_BOARD_ID ^ 0x78U} << 32 | TRAMMEL_CLOCK_HZ;
 
-// A level a pin.
+// The levels, a bit per pin.
 struct Levels {
   std::uint32_t step = TRAMMEL_STEP_IDLE;
   std::uint32_t dir = TRAMMEL_DIR_IDLE;
   std::uint32_t output = TRAMMEL_OUTPUT_IDLE;
 };
 
-// The board by its rules. Reset lasts from the moment in which the lock is lost to kResetClocks clocks after it is
-// back; the card's pins follow its inputs a clock after it, and the board's STEP and DIR the card's another one later.
-// Its outputs are the card's, and idle in reset, without a clock.
+// The rules of the board. Reset lasts from the loss of the lock until kResetClocks clocks after it is back. The
+// stand-in card's pins follow its inputs one clock later, and the board's STEP and DIR follow the card's after one
+// more clock. The board's outputs are the card's, and idle in reset; both without a clock.
 class Board {
  public:
   void lose_lock() {
@@ -52,7 +52,7 @@ class Board {
   bool tx() const { return (told_ >> 63) != 0; }
 
  private:
-  std::uint64_t since_ = 0;  // clocks
+  std::uint64_t since_ = 0;  // clocks since the lock came back
   Levels pins_;
   Levels card_;
   bool stop_ = false;
@@ -83,7 +83,7 @@ class BoardUnderTest {
 
  private:
 #ifdef TRAMMEL_LOCK_IS_AN_INPUT
-  // Lost now and then, between clocks; sometimes before the reset of the last time is over.
+  // The lock is lost from time to time, between clocks, and sometimes before the previous reset is over.
   void set_lock() {
     const bool before = locked_;
     locked_ = locked_ ? !dice_.chance(dice_.chance(2) ? 3 * kResetClocks : kResetClocks) : dice_.chance(4);
@@ -95,10 +95,10 @@ class BoardUnderTest {
     compare();
   }
 #else
-  // The stand-in for the PLL has its lock after eight clocks.
+  // The stand-in for the PLL locks after eight clocks.
   void set_lock() { locked_ = check_.cycles() >= 8; }
 #endif
-  // Or releases, between clocks.
+  // Presses or releases the emergency stop between clocks.
   void press() {
     stop_ = !stop_;
     dut_->emergency_stop_i = stop_;

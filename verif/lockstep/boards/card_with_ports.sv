@@ -1,5 +1,5 @@
-// Stands for the card behind a board's pins: its pins are idle in reset and then follow inputs and serial line, the outputs the
-// emergency stop, too, without a clock.
+// Replaces the card behind a board's pins. Its pins are idle in reset, and then follow the inputs
+// and the serial line. The outputs also follow the emergency stop, without a clock.
 `default_nettype none
 module card_with_ports #(
     parameter int          Axes              = 4,
@@ -69,7 +69,8 @@ module card_with_ports #(
     output logic irq_o,
     output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
-  // Who this is goes out by the serial line, a bit a clock after the reset: nothing else of a board's top shows it.
+  // The identification is sent on the serial line, one bit per clock after the reset: no other
+  // signal of a board's top shows it.
   localparam logic [31:0] WHO = BoardId ^ {26'd0, Uart != 0, AxiLite == 0, PathCommands != 0, 3'd0};
   logic [63:0] told_q;
   logic [Outputs-1:0] output_q;

@@ -45,7 +45,7 @@ std::string text(const Motors& motors) {
 class Board {
  public:
   Board(BoardTop& top, const BoardFacts& facts) : top_(top), facts_(facts) {
-    // The PLL's lock and the reset after it.
+    // Waits for the PLL's lock and the reset after it.
     for (unsigned i = 0; i < 3000; ++i) clock();
   }
 
@@ -79,7 +79,7 @@ class Board {
   std::uint64_t cycles() const { return cycles_; }
   const Motors& motors() const { return motors_; }
   std::uint32_t outputs_seen() const { return outputs_seen_; }  // those that were ever high
-
+  // outputs that were high at any time
   UartEnd uart;
   std::function<void()> stepped = [] {};  // after each step
 
@@ -107,10 +107,10 @@ void identify(const Board& board, driver::Card& card) {
   board.require(levels == (kInputLevels & ((1U << inputs) - 1)), fmt::format("inputs at {:b}", levels));
 }
 
-// X goes 80 pulses, 80 more as the upper half of a circle where the board makes arcs, and another 80.
+// X moves 80 pulses, 80 more as the upper half of a circle if the board makes arcs, and another 80.
 constexpr std::int64_t kPart = 80;
-constexpr std::uint64_t kTicks = 4096;   // of each part
-constexpr double kClocksATick = 50;      // so each takes 2.9 ms at 70 MHz
+constexpr std::uint64_t kTicks = 4096;   // ticks per part
+constexpr double kClocksATick = 50;      // so each part takes 2.9 ms at 70 MHz
 constexpr std::uint64_t kHeld = 50'000;  // clocks
 constexpr std::int64_t kHoldAt = 3 * kPart / 2;
 constexpr double kPi = 3.14159265358979323846;
@@ -132,7 +132,7 @@ std::vector<driver::Command> parts(bool arc) {
   return {feed, line, driver::make_helix(half, kTicks), line, driver::EndCommand{}};
 }
 
-// Farthest step off the circle, pulses; on the circle is what lies beside the lines.
+// Largest distance of a step from the circle, pulses. Steps with Y != 0 belong to the circle.
 class Circle {
  public:
   void step(const Motors& at) {
@@ -149,7 +149,7 @@ class Circle {
   std::int64_t highest_ = 0;
 };
 
-// Holds when the middle is reached, and goes on when nothing has moved for a while.
+// Holds when the middle is reached, and continues when nothing has moved for a while.
 class Hold {
  public:
   Hold(Board& board, driver::Card& card) : board_(board), card_(card) {}
@@ -204,7 +204,7 @@ void stream(Board& board, driver::Card& card) {
                 fmt::format("Y was at {}", circle.highest()));
 }
 
-// Pressed it stops the card and cannot be cleared; released it can.
+// While the emergency stop is pressed, it stops the card and cannot be cleared; after its release it can.
 void stop_at_the_pin(Board& board, driver::Card& card) {
   constexpr std::uint32_t kStopped = card_map::field::kFaultEmergencyStop;
   board.require(card.read_faults() == 0, "a fault before the emergency stop: " + card.read_fault_text());
@@ -217,7 +217,7 @@ void stop_at_the_pin(Board& board, driver::Card& card) {
   board.require(card.read_faults() == 0, "released and cleared: " + card.read_fault_text());
 }
 
-// The line as a TCP connection, whose bytes come and go at the pins.
+// Makes the serial line available as a TCP connection, whose bytes come and go at the pins.
 class Bridge {
  public:
   explicit Bridge(Board& board) : board_(board), thread_([this] { serve(); }) {}
@@ -229,7 +229,7 @@ class Bridge {
   Bridge& operator=(const Bridge&) = delete;
 
   std::string url() const { return listener_->url() + "?hello=no&timeout=20000"; }
-  // Until nobody is there: then the board is at rest in its time, too, and the caller's.
+  // Waits until no client is connected: then the board, and its clock, belong to the caller again.
   void wait_for_the_end() const {
     while (served_) std::this_thread::sleep_for(1ms);
   }
@@ -246,7 +246,7 @@ class Bridge {
       }
     }
   }
-  // The card's time goes on while somebody is there.
+  // The card's clock runs while a client is connected.
   void serve(transport::ByteStream& stream) {
     board_.uart.begin(8 * kFastestBit, kBreak);
     std::array<std::uint8_t, 256> bytes{};
@@ -261,7 +261,7 @@ class Bridge {
         if (!back.empty()) stream.write(back.data(), back.size());
       }
     } catch (const driver::LinkError&) {
-      // It has gone.
+      // The client has gone.
     }
   }
 
@@ -272,7 +272,7 @@ class Bridge {
   std::thread thread_;
 };
 
-// What the trammel command says; it must end well.
+// The output of the trammel command, which must succeed.
 std::string trammel(const Board& board, const Bridge& bridge, const std::string& arguments) {
   std::string out;
   const std::string line = TRAMMEL_COMMAND " " + arguments + " --card '" + bridge.url() + "' 2>&1";
@@ -296,7 +296,7 @@ void streams_and_holds(BoardTop& top, const BoardFacts& facts) {
   UartLink link(
       board.uart, {facts.clock_hz, facts.baud, kBreak}, [&board] { board.clock(); },
       [&board] { return board.cycles(); });
-  // A board that does not answer is asked once.
+  // A board that does not answer is asked only once.
   driver::FrameBus::Options once;
   once.answer = 2ms;
   once.sends = 1;
@@ -312,7 +312,7 @@ void streams_and_holds(BoardTop& top, const BoardFacts& facts) {
   }
 }
 
-// The default machine, without the axes that the board lacks.
+// The default machine without the axes that the board does not have.
 std::string machine_file(const BoardFacts& facts) {
   std::string text = machine::default_machine_text();
   if (facts.axes < 4) {
@@ -334,7 +334,7 @@ void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   trammel(board, bridge, fmt::format("line --to 200,-100,50{} --duration 0.002 --no-ramp", fourth != 0 ? ",7" : ""));
   board.require_motors({200, -100, 50, fourth}, "after the line");
 
-  // Lines, an arc, an output.
+  // Program: lines, an arc, an output.
   const std::string program = testing::TempDir() + facts.name + "_board_test.ngc";
   std::ofstream(program)
       << "G21 G90 G17\nM3\nG1 X1 Y0.5 F60000\nG1 X1.5 Y0.25\nG2 X2.5 Y0.25 I0.5\nG1 X3 Y-0.5 Z0.25\nM2\n";
@@ -344,7 +344,7 @@ void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   }
   const std::string said = trammel(board, bridge, "run " + program + quick);
   require_said(board, said, " 0 sent again");
-  board.require_motors({240, -40, 20, fourth}, "after " + said);  // absolute, wherever the line before it has ended
+  board.require_motors({240, -40, 20, fourth}, "after " + said);  // absolute, wherever the previous line ended
   board.require(board.outputs_seen() == 1U << 2, fmt::format("outputs {:b} were on", board.outputs_seen()));
 }
 

@@ -1,6 +1,6 @@
-// A whole board, its top as it is synthesised but for what stands for PLL and pins: a host at its UART, a motor at each
-// pair of pins. Every board is judged by the same; what is judged are the steps at the pins. Each throws Mismatch when
-// the board does otherwise.
+// A whole board: its top as synthesised, except for the replacements of the PLL and of pin primitives, with a host at
+// its UART and a motor at each pair of pins. The same tests judge every board, by the steps at its pins. Each test
+// throws Mismatch if the board fails it.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace trammel::lockstep {
 
-// The top, whatever its name.
+// Interface to the top, which has a different name on each board.
 class BoardTop {
  public:
   struct Pins {
@@ -25,10 +25,10 @@ class BoardTop {
   virtual void press(bool pressed) = 0;
 };
 
-// What stands at the inputs, bit n: input n, as many as there are.
+// The levels at the inputs; bit n: input n, as many as the board has.
 constexpr std::uint32_t kInputLevels = 0xA5C3;
 
-// Of board.toml, and the rate at which a host speaks to it.
+// Data from board.toml, and the baud rate of the host.
 struct BoardFacts {
   std::string name;
   std::uint32_t board_id = 0;
@@ -40,11 +40,11 @@ struct BoardFacts {
   double baud = 0;
 };
 
-// With the driver: what it says of itself and of its inputs; a line, an arc where it has the generator, another line in
-// one stream, with a hold in the middle; the emergency stop.
+// Uses the driver: checks the identification and the inputs; sends a line, an arc if the board has the generator, and
+// another line in one stream, with a hold in the middle; checks the emergency stop.
 void streams_and_holds(BoardTop& top, const BoardFacts& facts);
 
-// By trammel info, trammel line and a program by trammel run, at the highest rate: 25 clocks a bit.
+// Uses trammel info, trammel line, and trammel run with a program, at the highest rate: 25 clocks per bit.
 void obeys_commands(BoardTop& top, const BoardFacts& facts);
 
 }  // namespace trammel::lockstep

@@ -1,5 +1,6 @@
-// An AXI4-Lite master for the card under lockstep: clocks of its own choice before each valid and ready, write and read
-// side by side. It looks at what the golden model answers; an answer of the RTL that differs is a mismatch.
+// An AXI4-Lite master for the card under lockstep. It delays each valid and ready by its own number of clocks, and
+// writes and reads side by side. It uses the answers of the golden model; a different answer of the RTL is a
+// mismatch.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,7 @@
 
 namespace trammel::test {
 
-// `Card`: a LockstepCard, or what is clocked as one is and shows its bus.
+// `Card`: a LockstepCard, or a class with the same clocking and bus.
 template <class Card>
 class AxiHostOf {
  public:
@@ -23,13 +24,13 @@ class AxiHostOf {
     std::uint8_t strobes = 0xF;
   };
   struct Answers {
-    bool written = false;               // the write was taken, not refused
-    std::optional<std::uint32_t> read;  // what was read; nothing when refused
+    bool written = false;               // the write was accepted
+    std::optional<std::uint32_t> read;  // the value read; nothing if the read was refused
   };
 
   AxiHostOf(Card& card, std::uint64_t seed) : card_(card), random_(seed) {}
 
-  // Valid and ready come up to `clocks` late, each at random; 0: at once, ready before its valid.
+  // Each valid and ready comes up to `clocks` late, at random; 0: at once, and ready before its valid.
   void set_delays(unsigned clocks) { max_delay_ = clocks; }
 
   bool write(std::uint32_t address, std::uint32_t value, std::uint8_t strobes = 0xF) {
@@ -43,7 +44,7 @@ class AxiHostOf {
   void set_pins(std::uint32_t pins) { pins_ = pins; }
   std::uint32_t pins() const { return pins_; }
   void press_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
-  // Switches that change the levels, set_pins()'s included, in clocks of their own. Not owned.
+  // Switches that change the levels, including those of set_pins(), in clocks of their own. Not owned.
   void set_switches(Switches* switches) { switches_ = switches; }
   void wait(std::uint64_t clocks) { run({}, clocks); }
   void reset(std::uint64_t clocks) {
@@ -52,9 +53,9 @@ class AxiHostOf {
     run(in, clocks);
   }
 
-  // Clocks since the start, whatever reset the card.
+  // Clocks since the start; resets of the card do not change the count.
   std::uint64_t clocks() const { return clocks_; }
-  // The most clocks that an answer took from its handshake on.
+  // The longest time from a handshake to its answer, clocks.
   std::uint64_t slowest_answer() const { return slowest_; }
   Card& card() { return card_; }
   std::uint64_t below(std::uint64_t count) { return random_() % count; }
@@ -74,7 +75,7 @@ class AxiHostOf {
       clocks -= some;
     }
   }
-  // One handshake: not before `delay` clocks, done when valid and ready met.
+  // One handshake: begins after `delay` clocks, ends when valid and ready are both high.
   struct Handshake {
     bool due = false;
     std::uint64_t delay = 0;

@@ -1,4 +1,4 @@
-// Cycles a second of the engines over one long line of four axes: items are clock cycles, in lockstep all compared.
+// Speed of the engines over one long line of four axes. Items are clock cycles; in lockstep all of them are compared.
 #include <benchmark/benchmark.h>
 
 #include "host.hpp"
@@ -7,7 +7,7 @@ namespace {
 
 using namespace trammel;
 
-// One step of the fastest axis in 100 ticks.
+// The fastest axis steps once per 100 ticks.
 void run_line(benchmark::State& state, const sim::SimulationOptions& options, double clocks_a_tick) {
   const auto card = sim::make_engine(options);
   test::Host host(*card);
@@ -22,7 +22,7 @@ void run_line(benchmark::State& state, const sim::SimulationOptions& options, do
   state.SetItemsProcessed(static_cast<std::int64_t>(card->cycles() - begin));
 }
 
-// The RTL engine in the caller's thread, as tests have it, and with the RTL in its own, as the trammel command.
+// The RTL engine in the caller's thread, as in tests, or with the RTL in its own thread, as in the trammel command.
 sim::SimulationOptions lockstep(bool rtl_thread) {
   sim::SimulationOptions options;
   options.rtl_thread = rtl_thread;

@@ -1,5 +1,5 @@
-// The whole card, RTL beside golden model: events at every clock of a program. Cuts, a probe's edge, late periods,
-// counts at their borders, steps that wait.
+// The whole card, RTL beside golden model, with events at every clock of a program: cuts, a probe's edge, late
+// periods, counts at the limits of their counters, steps that wait.
 #include <gtest/gtest.h>
 
 #include "card_programs.hpp"
@@ -20,7 +20,7 @@ namespace field = card_map::field;
 
 enum class Cut { kAbort, kResetOfOneClock, kResetOfTwoClocks, kHold, kStart };
 
-// The program, cut at a clock of its own each time, and a new one at once.
+// Cuts the program once at each of its clocks, and starts a new one at once.
 void cut_at_every_clock(Cut cut, std::uint64_t seed) {
   constexpr unsigned kAxes = 4;
   sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
@@ -50,7 +50,7 @@ void cut_at_every_clock(Cut cut, std::uint64_t seed) {
         break;
     }
     if (host.below(2) == 0) continue;
-    // A direct move may last; nothing outlasts a recovery.
+    // A direct move may take long, but nothing lasts longer than a recovery.
     const bool idle = traffic.wait_idle(4000);
     EXPECT_TRUE(idle || cut == Cut::kStart) << at;
     if (!idle || (traffic.status() & (field::kStatusFaulted | field::kStatusRefused)) != 0) {
@@ -86,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(Program, CardCut,
                            }
                          });
 
-// A probe's edge at every clock of a program of lines, an arc, outputs, a dwell and a second PROBE; what stands behind
-// PROBE_END runs when the edge is cleared.
+// A probe's edge at every clock of a program of lines, an arc, outputs, a dwell and a second PROBE. The commands
+// after PROBE_END run when the edge is cleared.
 void edge_at_every_clock(std::uint32_t slew, std::uint64_t seed) {
   constexpr unsigned kAxes = 4;
   sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
@@ -139,8 +139,8 @@ TEST(CardProbe, AnEdgeAtEveryClockOnARamp) {
   EXPECT_EQ(lockstep::judge([] { edge_at_every_clock(0x400000, 17); }), "");
 }
 
-// A silent piece on a card that stands held, the rest of its path behind it, and at every clock the end of the hold,
-// an abort, or nothing until all has gone through.
+// A silent piece on a card in a hold, followed by the rest of its path. At every clock the hold ends, or an abort
+// comes, or nothing happens until the program is over.
 void held_silence(std::uint64_t seed) {
   constexpr unsigned kAxes = 4;
   sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
@@ -186,7 +186,7 @@ TEST(CardHold, ASilentPieceRunsInIt) {
   EXPECT_EQ(lockstep::judge([] { held_silence(19); }), "");
 }
 
-// Counts at the borders of the counters' parts: 4, 20 and more bits of ticks, 16 bits of a halfword, dwells alike.
+// Counts at the limits of the counters' parts: 4, 20 and more bits of ticks, 16 bits of a halfword; dwells too.
 void counts_around(std::uint64_t count, std::uint64_t seed) {
   constexpr unsigned kAxes = 4;
   sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
@@ -216,9 +216,9 @@ TEST_P(CardCounts, Around) {
 INSTANTIATE_TEST_SUITE_P(Bits, CardCounts, testing::Values(4U, 16U, 20U),
                          [](const auto& bits) { return std::to_string(bits.param); });
 
-// Position streaming: the second of three periods late by so many clocks before each of its words; under the full
-// ratio, in a hold, at a ratio of 0 and at half of it. Either the card goes on without a fault, or the period was
-// missing.
+// Position streaming: the second of three periods is late, by a number of clocks before each of its words. Runs at
+// the full ratio, in a hold, at a ratio of 0 and at half ratio. Either the card continues without a fault, or the
+// period is missing.
 struct Lateness {
   std::uint64_t late = 0;
   std::uint64_t missing = 0;
@@ -287,8 +287,8 @@ std::string way_name(const testing::TestParamInfo<unsigned>& way) {
 }
 INSTANTIATE_TEST_SUITE_P(Way, CardStreaming, testing::Range(0U, 4U), way_name);
 
-// The watchdog expires in a line, on a ramp and at once: the card stops, keeps its cause until WATCHDOG is written, and
-// does not move by clearing it.
+// The watchdog expires during a line, with a ramp and without: the card stops, keeps the cause until WATCHDOG is
+// written, and does not move when the cause is cleared.
 void silent_host(std::uint64_t seed) {
   constexpr unsigned kAxes = 4;
   constexpr std::uint64_t kUnit = model::Watchdog::kUnitClocks;
@@ -336,7 +336,7 @@ TEST(CardWatchdog, StopsForASilentHost) {
   EXPECT_EQ(lockstep::judge([] { silent_host(lockstep::seed_from_environment(29)); }), "");
 }
 
-// Steps that wait for their shaper, under limits from 1 clock on: some are faults, some are not.
+// Steps that wait for their shaper, with limits from 1 clock on: some are faults, others are not.
 void waiting_steps(std::uint64_t seed) {
   constexpr unsigned kAxes = 4;
   sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);

@@ -1,5 +1,5 @@
-// The card built with other engines than by default, RTL beside golden model: random traffic, of which what needs a
-// missing engine is refused, and each refusal by its name.
+// The card built with engines other than the default, RTL beside golden model: random traffic, in which each command
+// that needs a missing engine is refused with the right reason.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ constexpr bool kMachineInputs = card_map::has_engine(kEngines, card_map::engine:
 constexpr bool kEmergencyStop = card_map::has_engine(kEngines, card_map::engine::kEmergencyStop);
 constexpr bool kEnables = card_map::has_engine(kEngines, card_map::engine::kEnables);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
-// Where they are refused, since each refusal closes the stream, only now and then.
+// Cards without arcs get few of them, because each refusal closes the stream.
 constexpr unsigned kArcEvery = kArcs ? 4 : 40;
 
 sim::LockstepCard card_with_engines(std::uint64_t seed) {
@@ -86,14 +86,14 @@ TEST(CardEngines, RandomTraffic) {
   EXPECT_EQ(lockstep::judge([&] { random_traffic(seed, lockstep::scaled(1'000'000)); }), "");
 }
 
-// The reason of the refusal that stands, which is then cleared.
+// The reason of the present refusal, which is then cleared.
 Reason refusal(AxiHost& host) {
   const auto reason = static_cast<Reason>(host.read(reg::kRefusal).value_or(0) & field::kRefusalReason);
   host.write(reg::kRefusal, 1);
   return reason;
 }
 
-// From the last axis's FREQUENCY_LO to START.
+// Covers the registers from the last axis's FREQUENCY_LO to START.
 void direct_mode_refusals(AxiHost& host) {
   for (std::uint32_t address = reg::frequency_lo(kAxes - 1); address <= reg::kStart; address += 4) {
     const bool reads = host.read(address).has_value();
@@ -101,7 +101,7 @@ void direct_mode_refusals(AxiHost& host) {
     if (!reads) {
       EXPECT_EQ(refusal(host), kDirectMode ? Reason::WriteOnly : Reason::UnknownAddress) << address;
     }
-    // No axis: START has nothing to move.
+    // No axis is selected, so START has nothing to move.
     const bool writes = host.write(address, 0);
     EXPECT_EQ(writes, kDirectMode && address != reg::kStart) << address;
     if (!writes) {
@@ -110,7 +110,7 @@ void direct_mode_refusals(AxiHost& host) {
   }
 }
 
-// What the card's descriptors say is built in.
+// The engines that the card's descriptors report.
 std::uint32_t engines(AxiHost& host) {
   std::uint32_t mask = 0;
   for (std::uint32_t unit = 0; unit < card_map::kDescriptorSlots; ++unit) {
@@ -167,7 +167,7 @@ void refusals(std::uint64_t seed) {
   traffic.abort();
   host.write(reg::kRatioFixed, 0x10000);
   host.write(reg::kRefusal, 1);
-  // Lines are on every card.
+  // Every card can make lines.
   EXPECT_TRUE(traffic.send(test::line(60, {5, -6, 7, 8})));
   EXPECT_TRUE(traffic.send(test::feed(60, 12)));
   EXPECT_TRUE(traffic.wait_idle(5000));
@@ -180,7 +180,7 @@ TEST(CardEngines, WhatIsMissingIsRefusedByName) {
   EXPECT_EQ(lockstep::judge([] { refusals(lockstep::seed_from_environment(5)); }), "");
 }
 
-// A step of the path, without its clock.
+// A step of the path, without its time.
 struct PathStep {
   std::uint64_t command;
   std::uint64_t tick;
@@ -204,8 +204,8 @@ class PathRecorder : public model::CardSteps {
 
 using Words = std::vector<std::vector<std::uint32_t>>;
 
-// Lines, and arcs on every engine that the card has, in pieces of all classes that go on over their borders; dwells. A
-// tick in 20 to 60 clocks at the full ratio, so that no step waits for long.
+// Lines, and arcs on every engine of the card, in pieces of all classes that continue across path borders; dwells.
+// One tick per 20 to 60 clocks at the full ratio, so that no step waits for long.
 Words random_program(std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   const auto random = [&engine](std::uint64_t count) { return engine() % count; };
@@ -245,7 +245,7 @@ Words random_program(std::uint64_t seed) {
   return words;
 }
 
-// What is done to the time base while a program runs.
+// The disturbance of the time base while a program runs.
 enum class Doing { kNothing, kSlow, kHolds, kOverrides, kAll, kStarved };
 
 void disturb_time(AxiHost& host, Doing doing) {
@@ -287,8 +287,8 @@ PathRecorder run_program(const Words& words, std::uint64_t seed, Doing doing) {
   return recorder;
 }
 
-// Command, tick, axis and direction of every step: the same at 100 %, at 37 %, under ten holds or overrides of any
-// class, under both at any slew, and where the queues run dry again and again.
+// Command, tick, axis and direction of every step are the same at 100 %, at 37 %, with ten holds or overrides of any
+// class, with both at any slew, and if the queues run dry again and again.
 void same_paths(std::uint64_t seed) {
   const Words words = random_program(seed);
   const PathRecorder plain = run_program(words, seed, Doing::kNothing);

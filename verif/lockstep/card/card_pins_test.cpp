@@ -1,6 +1,6 @@
-// What shows at the pins of the Verilated card alone, by a checker of its own. The emergency stop at moments that a
-// clock-by-clock model does not know: outputs change without a clock, and a press that comes and goes between two edges
-// of the clock stops the card. And the length of pulses, whatever happens in each of their clocks.
+// The pins of the Verilated card alone, with a checker of their own. The emergency stop acts at times that a
+// clock-by-clock model cannot represent: outputs change without a clock, and a press that comes and goes between two
+// clock edges stops the card. The second subject is the length of pulses, for events in each of their clocks.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using namespace trammel;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// What the scenario wants; an unmet wish is reported as a mismatch, so that seeded bugs show.
+// The expectations of the scenario. An unmet one is reported as a mismatch, so that seeded bugs are detected.
 class Wishes {
  public:
   explicit Wishes(std::uint64_t seed) : check_("card_pins", seed) {}
@@ -51,7 +51,7 @@ class Card {
     clocks(300);
   }
 
-  // Evaluated at once, whatever the clock does.
+  // Evaluated at once, independent of the clock.
   void press(bool pressed) {
     dut_->emergency_stop_i = pressed == level_;
     dut_->eval();
@@ -59,7 +59,7 @@ class Card {
   void clocks(unsigned count) {
     for (unsigned i = 0; i < count; ++i) clock();
   }
-  // One period; `watch`, where there is one, sees the pins after it.
+  // One period; then `watch`, if set, receives the pins.
   void clock() {
     dut_.clock();
     if (watch) watch(dut_->step_o, dut_->dir_o);
@@ -69,7 +69,7 @@ class Card {
     return static_cast<std::uint32_t>(get(
         dut_->observe_o, up(bus::axis_observe::kPosition, bus::observe::kWidth + bus::axis_observe::kWidth * axis)));
   }
-  // The host begins a write and falls silent.
+  // The host begins a write and then stops.
   void begin_a_write() { dut_->awvalid_i = 1; }
   void write(std::uint32_t address, std::uint32_t data) {
     dut_->awvalid_i = dut_->wvalid_i = dut_->bready_i = 1;
@@ -84,7 +84,7 @@ class Card {
   }
   unsigned outputs() { return dut_->output_o; }
   std::uint64_t fault() { return get(dut_->observe_o, bus::observe::kFault); }
-  // Halves of a clock's period, so that a press may lie in either.
+  // Half a clock period, so that a press can fall into either half.
   void half(bool high) {
     dut_->clk_i = high;
     dut_->eval();
@@ -96,7 +96,7 @@ class Card {
 };
 
 constexpr unsigned kIdle = 0b0101;
-constexpr unsigned kSafe = 0b0011;  // outputs 1 on, 2 off at the cause; the others stay
+constexpr unsigned kSafe = 0b0011;  // at the cause output 1 goes on and output 2 off; the others keep their levels
 
 void glitches(bool level) {
   Wishes wish(level ? 1 : 0);
@@ -141,7 +141,7 @@ TEST(EmergencyPin, ActiveLow) {
   EXPECT_EQ(lockstep::judge([] { glitches(false); }), "");
 }
 
-// The pulses at the pins of both axes: axis 0 with a pulse for each step, axis 1 with a pin for each direction.
+// The pulses at the pins of both axes. Axis 0 has a pulse per step, axis 1 a pin per direction.
 class Pulses {
  public:
   void look(unsigned step, unsigned dir) {
@@ -157,7 +157,7 @@ class Pulses {
   bool in_pulse() const { return high_[0] != 0; }
   unsigned begun(unsigned pin) const { return begun_[pin]; }
 
-  std::vector<unsigned> lengths;  // clocks, of pulses that are over
+  std::vector<unsigned> lengths;  // lengths of the completed pulses, clocks
 
  private:
   std::array<unsigned, 3> high_{};
@@ -167,7 +167,7 @@ class Pulses {
 constexpr unsigned kLength = 12;  // clocks of a pulse
 constexpr unsigned kShorter = 3;
 
-// What may happen in a pulse. MODE is left out: it inverts a pin, which is an edge.
+// Events that may come during a pulse. MODE is left out, because inverting a pin is an edge.
 std::vector<std::function<void(Card&)>> happenings() {
   std::vector<std::function<void(Card&)>> all;
   const auto writes = [&all](std::uint32_t address, std::uint32_t data) {
@@ -218,7 +218,7 @@ void send(Card& card, const driver::Command& command, std::uint8_t number) {
   for (const std::uint32_t word : words) card.write(reg::kStream, word);
 }
 
-// Both axes run, the drives are enabled without delays, and one thing happens in clock `at` of a pulse.
+// Both axes run with the drives enabled and no delays; one event comes in clock `at` of a pulse.
 unsigned one_course(const std::function<void(Card&)>& happens, unsigned at, Wishes& wish) {
   Card card(true);
   Pulses pulses;

@@ -1,4 +1,4 @@
-// What several of the whole card's tests share.
+// Helpers for several tests of the whole card.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace trammel::test {
 
-// Clocks compared, and whether every one of them was compared in every signal.
+// Checks the number of clocks, and that every signal was compared in every clock.
 inline void expect_all_compared(sim::LockstepCard& card, unsigned axes, std::uint64_t at_least) {
   card.settle();
   EXPECT_GE(card.cycles(), at_least);

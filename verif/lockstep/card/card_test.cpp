@@ -1,5 +1,5 @@
-// The whole card, RTL beside golden model, from the AXI4-Lite pins to the STEP pins: random traffic, and what only the
-// card joins.
+// The whole card, RTL beside golden model, from the AXI4-Lite pins to the STEP pins: random traffic, and the features
+// that only the whole card has.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -20,11 +20,11 @@ using test::Traffic;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// Any access is answered within this many clocks (docs/developer/architecture.md).
+// Bound in clocks of the answer to any access (docs/developer/architecture.md).
 std::uint64_t answer_bound(unsigned axes) { return axes <= 4 ? 500 : 700; }
 
-// One run of random traffic; together 10^8 clocks, which scripts/test adds up. Several runs instead of a longer one:
-// ctest spreads them over the cores.
+// One run of random traffic. All runs together have 10^8 clocks; scripts/test adds them up. There are several runs
+// instead of one long one, so that ctest can use all cores.
 struct TrafficRun {
   unsigned axes;
   unsigned index;
@@ -50,7 +50,7 @@ void expect_all_happened(const Traffic& traffic, std::uint64_t clocks) {
   EXPECT_GT(traffic.holds, clocks / 100'000);
   EXPECT_GT(traffic.overrides, clocks / 100'000);
   if (!traffic.roles) return;
-  // Each cause that an input may be.
+  // Each cause that an input can be.
   for (const std::uint32_t cause :
        {field::kFaultLimit, field::kFaultDriveFault, field::kFaultProbe, field::kFaultToolSetter})
     EXPECT_GT(traffic.causes_of(cause), clocks / 200'000) << "FAULT " << cause;
@@ -58,7 +58,7 @@ void expect_all_happened(const Traffic& traffic, std::uint64_t clocks) {
   EXPECT_GT(traffic.captured, clocks / 200'000);
   EXPECT_GT(traffic.queued, clocks / 200'000);
   EXPECT_GT(traffic.lost, clocks / 2'000'000);
-  // One in some millions of clocks: too few for a short run.
+  // It comes once in some millions of clocks: too rare for a short run.
   if (clocks >= 5'000'000) {
     EXPECT_GT(traffic.causes_of(field::kFaultEmergencyStop), clocks / 5'000'000);
   }
@@ -70,27 +70,27 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   Traffic traffic(host, axes);
   traffic.commands_every = 6;
   traffic.pwm = true;
-  // Inputs that change by themselves in two of three runs.
+  // In two of three runs inputs change by themselves.
   test::Switches switches(4, 15, seed);
   traffic.roles = seed % 3 != 0;
   if (traffic.roles) host.set_switches(&switches);
   traffic.emergency = traffic.enables = traffic.roles;
   host.wait(300);
-  // The constants; the random reads seldom meet one.
+  // Reads the constants, because random reads rarely meet one.
   for (std::uint32_t address = 0; address < 0x40; address += 4) host.read(address);
-  // A direct move that nothing refuses; the random ones are often refused.
+  // A direct move that is accepted; the random ones are often refused.
   host.write(reg::frequency_lo(0), 1U << 31);
   host.write(reg::count(0), 3);
   host.write(reg::kLengthLo, 100);
   host.write(reg::kStart, 1);
   traffic.settings();
-  // From hosts that leave the card in peace to hosts that do not.
+  // From rare to frequent disturbances by the host.
   const std::uint64_t calm = 2 + 2 * (seed % 3);
   while (host.clocks() < clocks) traffic.run(10, calm);
   traffic.recover();
   traffic.wait_idle(100'000);
   EXPECT_LE(host.slowest_answer(), answer_bound(axes));
-  if (clocks >= 1'000'000) expect_all_happened(traffic, clocks);  // less in a short run against mutants
+  if (clocks >= 1'000'000) expect_all_happened(traffic, clocks);  // a short run against mutants has fewer events
   expect_all_compared(card, axes, clocks);
   std::cout << card.cycles() << " clocks of random traffic compared, " << traffic.holds << " holds, "
             << traffic.overrides << " overrides, " << traffic.underruns << " under-runs, " << traffic.probed
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Axes, CardLockstep, testing::ValuesIn(runs()), [](const
   return std::to_string(run.param.axes) + "_" + std::to_string(run.param.index);
 });
 
-// What only the card joins, each of it once: constants, strobes, a flush, full queues, counters, a reset between
+// Features of the whole card, each once: constants, strobes, a flush, full queues, counters, a reset between
 // accesses.
 void joins(unsigned axes) {
   sim::LockstepCard card = test::card_under_test(axes, 5, 0x3A5C);
@@ -128,14 +128,14 @@ void joins(unsigned axes) {
   EXPECT_FALSE(host.write(reg::kHoldLimit, 7, 0x3));
   read_live();
   host.write(reg::kRefusal, 1);
-  // A flush in mid command.
+  // A flush in the middle of a command.
   std::vector<std::uint32_t> words;
   driver::encode(line(10, {1}), 0, words);
   host.write(reg::kStream, words.front());
   host.write(reg::kControl, field::kControlFlush);
   read_live();
   traffic.recover();
-  // Queues that fill up while nothing moves.
+  // Queues that become full while nothing moves.
   unsigned lines = 0;
   unsigned pieces = 0;
   host.write(reg::kRatioFeed, 0);
@@ -155,7 +155,7 @@ void joins(unsigned axes) {
     host.write(reg::kControl, field::kControlSnapshot);
     host.read(reg::kSnapTimeLo);
   }
-  // After a reset a write comes before a read that waits beside it, whatever came last.
+  // After a reset a write comes before a read that waits at the same time, independent of the last access before it.
   host.write(reg::kHold, 1);
   host.reset(1);
   host.write_beside_read({reg::kHold, 1}, reg::kHold);
@@ -163,12 +163,12 @@ void joins(unsigned axes) {
   expect_all_compared(card, axes, 10'000);
 }
 
-// Pieces that want more ticks queued than the queues hold: the card stands until one of them is full, and goes on then.
+// Pieces that need more queued ticks than the queues can hold: the card waits until one queue is full, and then runs.
 void full_queues(unsigned axes) {
   sim::LockstepCard card = test::card_under_test(axes, 7, 0);
   AxiHost host(card, 7);
   Traffic traffic(host, axes);
-  constexpr std::uint64_t kLook = 150;  // clocks; the guard looks at its rule in fewer
+  constexpr std::uint64_t kLook = 150;  // clocks; the guard decides in fewer
   const auto send = [&](bool geometry, std::uint64_t ticks) {
     driver::FeedCommand piece = feed(ticks, 2);
     piece.stop_distance = 0xFFFFFFFF;
@@ -177,7 +177,7 @@ void full_queues(unsigned axes) {
   host.wait(300);
   for (const bool geometry : {true, false}) {
     traffic.recover();
-    // Clocks of a direct move are no ticks of a piece: more of them than all lines together have ticks.
+    // Clocks of a direct move are not ticks of a piece: it has more clocks than all lines together have ticks.
     host.write(reg::frequency_hi(0), 0x80);
     host.write(reg::count(0), 3);
     host.write(reg::kLengthLo, 2000);
@@ -198,8 +198,8 @@ void full_queues(unsigned axes) {
   expect_all_compared(card, axes, 10'000);
 }
 
-// What a probe drops the under-run guard does not count off: it has no rule until the card rests, and then has one
-// again.
+// The under-run guard does not subtract commands that a probe drops: it suspends its rule until the card is at rest,
+// and then applies it again.
 void guard_behind_a_probe(unsigned axes) {
   sim::LockstepCard card = test::card_under_test(axes, 9, 0);
   AxiHost host(card, 9);
@@ -226,7 +226,7 @@ void guard_behind_a_probe(unsigned axes) {
   expect_all_compared(card, axes, 1000);
 }
 
-// A reset of one clock in each clock of a write and a read whose answers nobody takes.
+// A reset of one clock in each clock of a write and a read whose answers the master never accepts.
 void resets_in_accesses(unsigned axes) {
   sim::LockstepCard card = test::card_under_test(axes, 11, 0);
   model::CardModel::Inputs ask;
@@ -237,21 +237,21 @@ void resets_in_accesses(unsigned axes) {
   ask.araddr = reg::kAxes;
   model::CardModel::Inputs reset;
   reset.rst = true;
-  constexpr std::uint64_t kFilled = 1000;  // clocks: longer than the registers are filled, with any number of axes
+  constexpr std::uint64_t kFilled = 1000;  // clocks: longer than the filling of the registers, with any number of axes
   for (unsigned at = 0; at < 24; ++at) {
     card.run({}, kFilled);
     card.run(ask, at);
     card.run(reset, 1);
     card.run(ask, kFilled);
-    // The answers to what the first clocks after it asked for stand.
+    // The answers to the first requests after the reset are still there.
     EXPECT_TRUE(card.model().bus().bvalid && card.model().bus().rvalid) << at;
     card.run(reset, 1);
   }
   expect_all_compared(card, axes, 24'000);
 }
 
-// The emergency stop at moments around the end of a reset, while the registers are filled: what a stop leaves in them
-// and all that they hold besides is read back.
+// The emergency stop at times around the end of a reset, while the registers are filled. Reads back all registers,
+// including those that a stop changes.
 void emergency_stop_after_a_reset(unsigned axes) {
   sim::LockstepCard card = test::card_under_test(axes, 13, 0);
   AxiHost host(card, 13);

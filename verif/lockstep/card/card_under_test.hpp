@@ -1,4 +1,4 @@
-// The card that the scenarios judge.
+// The card under test in the scenarios.
 #pragma once
 
 #include <cstdint>

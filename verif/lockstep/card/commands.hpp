@@ -1,4 +1,4 @@
-// Commands for card tests: lines and pieces by their meaning, and random ones.
+// Commands for card tests: lines and pieces from physical values, and random ones.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ inline driver::LineCommand line(std::uint64_t ticks, const std::vector<std::int6
   return result;
 }
 
-// A piece at a constant rate of one tick in `clocks`.
+// A piece at a constant rate of one tick per `clocks` clocks.
 inline driver::FeedCommand feed(std::uint64_t ticks, double clocks) {
   driver::FeedCommand result;
   result.ticks = ticks;
@@ -35,7 +35,7 @@ inline driver::FeedCommand feed(std::uint64_t ticks, double clocks) {
   return result;
 }
 
-// A quarter or a whole circle of up to 20 pulses about an axis crossing, on two axes by chance, by either step rule.
+// A quarter or a full circle of up to 20 pulses about an axis crossing, on two random axes, by either step rule.
 template <class Random>
 driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   driver::ArcGeometry arc;
@@ -51,8 +51,8 @@ driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   return driver::prepare(arc, random(2) == 0 ? driver::StepRule::kFourDirections : driver::StepRule::kEightDirections);
 }
 
-// An arc in chords, with any further axes, as words without their number; adds its ticks to `total`. The increments sum
-// to at most a pulse a tick.
+// An arc in chords, with random further axes, as words without their number; adds its ticks to `total`. The sum of
+// the increments is at most one pulse per tick.
 template <class Random>
 std::vector<std::uint32_t> random_chords(Random&& random, unsigned axes, std::uint64_t& total) {
   const std::uint64_t path_ticks = 1 + random(600);
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> random_chords(Random&& random, unsigned axes, std::ui
   };
   put(ticks, 3);
   put(path_ticks, 3);
-  // Rounded; exact in 64 bits, since there are few ticks.
+  // Rounded; exact in 64 bits, because there are few ticks.
   put(((path_ticks << 40) + ticks / 2) / ticks, 3);
   put(y << 8 | x << 4 | random(2), 1);
   put((5 + random(4)) << 8 | k, 1);
@@ -90,7 +90,7 @@ std::vector<std::uint32_t> random_chords(Random&& random, unsigned axes, std::ui
   return words;
 }
 
-// A line, or one path in `arc_every` an arc, for ticks that come one in `pace` clocks; adds its ticks to `total`.
+// A line, or for one path in `arc_every` an arc, for one tick per `pace` clocks; adds its ticks to `total`.
 // `random(n)`: 0 .. n - 1.
 template <class Random>
 driver::Command random_path(Random&& random, unsigned axes, double pace, std::uint64_t& total, unsigned arc_every = 4) {
@@ -100,12 +100,12 @@ driver::Command random_path(Random&& random, unsigned axes, double pace, std::ui
     const driver::ArcCommand arc = random_arc(random, axes);
     total += arc.path_ticks;
     driver::ArcCommand timed = driver::with_ticks(arc, ticks + arc.path_ticks);
-    // An end that the walk does not meet: PATH_INCOMPLETE.
+    // An end that the walk does not reach: PATH_INCOMPLETE.
     if (random(20) == 0) timed.end_x += 3;
     return timed;
   }
   std::vector<std::int64_t> pulses(axes);
-  // Steps come no closer than the shaper serves them, but for some lines that overrun it.
+  // Steps come no faster than the shaper makes them, except on some lines that overrun it.
   const double most = static_cast<double>(ticks) * (random(40) == 0 ? 1.0 : std::min(1.0, pace / 14));
   for (std::int64_t& p : pulses) {
     const auto bound = static_cast<std::uint64_t>(most) + 1;
@@ -115,7 +115,7 @@ driver::Command random_path(Random&& random, unsigned axes, double pace, std::ui
   return line(ticks, pulses);
 }
 
-// A piece about one tick in `pace` clocks, half of them with acceleration and jerk.
+// A piece with about one tick per `pace` clocks; half of the pieces have acceleration and jerk.
 template <class Random>
 driver::FeedCommand random_piece(Random&& random, std::uint64_t ticks, double pace) {
   driver::FeedCommand result = feed(ticks, pace);

@@ -28,7 +28,7 @@ class Host {
     number_ = 0;
   }
   std::uint32_t status() { return card.read(reg::kStatus); }
-  // False when the card is still busy after `clocks`.
+  // False if the card is still busy after `clocks`, or has a fault.
   bool wait_idle(std::uint64_t clocks) {
     const std::uint64_t begin = card.cycles();
     while ((status() & field::kStatusBusy) != 0) {
@@ -53,8 +53,8 @@ class Host {
   std::uint8_t number_ = 0;
 };
 
-// A few random paths, the pieces for them and an END, played to the end. Some are faults, after which words are
-// refused; they are cleared. `random(n)`: 0 .. n - 1.
+// A few random paths, their pieces and an END, executed to the end. Some cause faults, after which words are refused;
+// the faults are cleared. `random(n)`: 0 .. n - 1.
 template <class Random>
 void random_section(Host& host, Random&& random, unsigned axes) {
   const double pace = 1.5 + static_cast<double>(random(40));

@@ -1,5 +1,5 @@
-// What judges the card, judged: every compared signal is missed nowhere and named right, nothing is left out of the
-// comparison, the RTL behind the model is compared as if beside it, and one evaluation a clock is as good as two.
+// Tests of the card's judge: it detects an error in every compared signal and names the signal; no output is left
+// out; the RTL that runs behind the model is compared as if they ran together; one evaluation per clock equals two.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,9 +25,9 @@ using testing::Not;
 using testing::StartsWith;
 
 constexpr std::uint32_t kClockHz = 1'000'000;
-constexpr std::uint64_t kResetClocks = 5;  // before the first cycle that is compared
+constexpr std::uint64_t kResetClocks = 5;  // clocks before the first cycle that is compared
 
-// A sound card that shows one wrong word in one cycle.
+// A correct card that shows one wrong word in one cycle.
 class Liar : public VerilatedCard {
  public:
   Liar(std::uint64_t cycle, std::size_t offset, std::uint32_t wrong_bits)
@@ -53,7 +53,7 @@ class Liar : public VerilatedCard {
   std::uint64_t clocks_ = 0;
 };
 
-// The report of the mismatch in which `scenario` ends; empty for none.
+// The mismatch report of `scenario`; empty if there is none.
 template <class Scenario>
 std::string report_of(Scenario scenario) {
   try {
@@ -73,8 +73,8 @@ std::string report_of_lie(std::uint64_t cycle, std::size_t offset, std::uint32_t
   });
 }
 
-// One bit of one signal in one cycle: at the edges of a batch, within one, and after the last full one; and whether the
-// RTL follows in batches, in a thread of its own or clock by clock, the report is the same.
+// One bit of one signal in one cycle: at the borders of a batch, within one, and after the last full one. The report
+// is the same whether the RTL follows in batches, in its own thread, or clock by clock.
 TEST(CardJudge, EverySignalIsCaughtAndNamedWithItsCycle) {
   for (const CardSignal& signal : kCardSignals) {
     for (std::size_t n = 0; n < signal.words; ++n) {
@@ -92,7 +92,7 @@ TEST(CardJudge, EverySignalIsCaughtAndNamedWithItsCycle) {
 }
 
 TEST(CardJudge, ReportHasBothValues) {
-  // At rest both rooms are the queues' depths.
+  // At rest both rooms are the depths of the queues.
   const std::string report = report_of_lie(100, offsetof(CardRecord, feed_room), 0x1, 64);
   EXPECT_THAT(report, StartsWith("card: cycle 100: feed_room is 0xa01 (2561) in RTL, 0xa00 (2560) in the model\n"));
 }
@@ -100,7 +100,7 @@ TEST(CardJudge, ReportHasBothValues) {
 TEST(CardJudge, EventsUpToTheCycleAreReported) {
   SimulationOptions options;
   const auto card = make_rtl_engine(std::make_unique<Liar>(450, offsetof(CardRecord, irq_o), 1), options);
-  // While a first write is answered no other runs: the events stand some clocks apart.
+  // While a write is answered no other one runs, so the events are some clocks apart.
   const std::uint64_t begin = card->cycles();
   std::string expected;
   std::string too_late;
@@ -115,7 +115,7 @@ TEST(CardJudge, EventsUpToTheCycleAreReported) {
   EXPECT_THAT(report, Not(HasSubstr(too_late)));
 }
 
-// The mismatch at the begin of a batch is reported with the last events of the batch before, though the model was
+// A mismatch at the start of a batch is reported with the last events of the previous batch, although the model was
 // ahead.
 TEST(CardJudge, ReportOfTheRtlsOwnThreadIsTheCallers) {
   for (const std::uint64_t cycle : {150U, 2049U, 3000U, 4097U}) {
@@ -150,14 +150,14 @@ class Broken : public VerilatedCard {
   std::uint64_t left_;
 };
 
-// Whatever the RTL's thread ends in comes out of a call, and the rest is dropped: the second batch is under way then.
+// An exception of the RTL's thread comes out of a call, and the rest is dropped; the second batch is under way then.
 TEST(CardJudge, ErrorsOfTheRtlsThreadReachTheCaller) {
   LockstepCard card(std::make_unique<Broken>(1000), CardModel::Config{}, 5, LockstepCard::kBatch, RtlThread::kOwn);
   EXPECT_THROW(card.run({}, 100'000), std::runtime_error);
   EXPECT_EQ(card.cycles(), 0U);
 }
 
-// Wrong in every clock: after the first report nothing is left that could end the process.
+// Wrong in every clock: after the first report, no second one may end the process.
 TEST(CardJudge, NothingIsComparedAfterAMismatch) {
   class Wrong : public VerilatedCard {
    public:
@@ -173,7 +173,7 @@ TEST(CardJudge, NothingIsComparedAfterAMismatch) {
   }
 }
 
-// Whoever asks what was compared is told of a mismatch in what the RTL had still to catch up with.
+// A query of the comparison state reports mismatches in clocks that the RTL had not finished yet.
 class CardJudgeThreads : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(RtlThread, CardJudgeThreads, testing::Bool());
 
@@ -195,7 +195,8 @@ TEST_P(CardJudgeThreads, QueriesCatchUp) {
 
 TEST(CardJudgeDeathTest, MismatchAtTheEndIsNotLost) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
-  // In the last, unfinished batch; and in the one before, which the RTL's thread has when the card is destroyed.
+  // A mismatch in the last, unfinished batch, and in the batch before, which the RTL's thread has when the card is
+  // destroyed.
   for (const std::uint64_t clocks : {10U, 2048U + 10U}) {
     for (const RtlThread thread : {RtlThread::kCallers, RtlThread::kOwn}) {
       if (clocks > LockstepCard::kBatch && thread == RtlThread::kCallers) continue;
@@ -210,8 +211,8 @@ TEST(CardJudgeDeathTest, MismatchAtTheEndIsNotLost) {
   }
 }
 
-// Signals a cycle that all cards have: 18 of the core, 8 of the bus (docs/developer/architecture.md); the positions are
-// one an axis.
+// Signals per cycle on every card: 18 of the core, 8 of the bus (docs/developer/architecture.md); plus one position
+// per axis.
 TEST_P(CardJudgeThreads, EverySignalIsComparedInEveryCycle) {
   for (const unsigned axes : {4U, 8U}) {
     SimulationOptions options;
@@ -228,13 +229,13 @@ TEST_P(CardJudgeThreads, EverySignalIsComparedInEveryCycle) {
   }
 }
 
-// The pulses that an axis counts: its position has them a clock later.
+// The pulse counts of an axis: its position includes them one clock later.
 bool shows_later(const std::string& port, unsigned bit) {
   if (port != "observe_o" || bit < bus::observe::kWidth) return false;
   return (bit - bus::observe::kWidth) % bus::axis_observe::kWidth >= bus::axis_observe::kCounts.offset;
 }
 
-// A bit of an output that turns shows in the record, whichever it is; and no output is forgotten here.
+// Any bit of any output that changes is visible in the record; this test covers every output.
 TEST(CardJudge, EveryBitOfEveryOutputIsCompared) {
   VerilatedContext context;
   Vcard4 rtl(&context);
@@ -282,7 +283,8 @@ TEST(CardJudge, EveryBitOfEveryOutputIsCompared) {
   EXPECT_EQ(ports, outputs);
 }
 
-// The card with one evaluation a clock and the card with both edges evaluated, in every clock, reset included.
+// Compares the card with one evaluation per clock with the card with both edges evaluated, in every clock, including
+// reset.
 class Pair : public VerilatedCard {
  public:
   Pair(std::uint64_t& clocks, std::uint64_t& different) : clocks_(clocks), different_(different) {}

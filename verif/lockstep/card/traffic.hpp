@@ -1,4 +1,4 @@
-// Random traffic for the card under lockstep: programs, and everything that a host may do to them at any clock.
+// Random traffic for the card under lockstep: programs, and everything that a host may do at any clock during them.
 // The same seed gives the same traffic.
 #pragma once
 
@@ -22,13 +22,13 @@ class Traffic {
   // One path in `arc_every` is an arc.
   Traffic(AxiHost& host, unsigned axes, unsigned arc_every = 4) : host_(host), axes_(axes), arc_every_(arc_every) {}
 
-  // Sends a command, sometimes broken in one bit when `faulty`. False when a word was refused.
+  // Sends a command; with `faulty`, sometimes with one wrong bit. False if a word was refused.
   bool send(const driver::Command& command, bool faulty = false) {
     std::vector<std::uint32_t> words;
     driver::encode(command, number_, words);
     return send_words(words, faulty);
   }
-  // The same of a command's words; their number is set here.
+  // The same for the words of a command; their number is set here.
   bool send_words(std::vector<std::uint32_t> words, bool faulty) {
     words[0] = (words[0] & 0xFF'FFFF) | std::uint32_t{number_} << 24;
     if (faulty) corrupt(words);
@@ -41,73 +41,74 @@ class Traffic {
     chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1U : 0U;
     return true;
   }
-  // OUTPUT and MARK beside one path in so many; 0: none.
+  // One OUTPUT or MARK per this many paths; 0: none.
   unsigned commands_every = 0;
-  // PWM among them.
+  // Also PWM.
   bool pwm = false;
-  // Pieces of all classes; else feed.
+  // Pieces of all classes; otherwise only feed.
   bool classes = true;
-  // One path in so many is an arc in chords; 0: none.
+  // One path in this many is an arc in chords; 0: none.
   unsigned chords_every = 0;
   std::uint64_t chords_taken = 0;
   void abort() {
     host_.write(reg::kControl, field::kControlAbort);
     number_ = 0;
   }
-  // A few paths and the pieces for them in any order between, sometimes a barrier.
+  // A few paths and their pieces in any order, sometimes with a barrier.
   void section(bool faulty);
-  // A stream whose pieces have stop distances and go on, with stalls, holds and overrides in it; sometimes left
-  // unfinished.
+  // A stream whose pieces have stop distances and continue each other, with stalls, holds and overrides; sometimes
+  // left unfinished.
   void starved();
-  // Paths between PROBE and PROBE_END, and waits for inputs, while inputs change; sometimes cleared, sometimes not.
+  // Paths between PROBE and PROBE_END, and waits for inputs, while inputs change; the edge is sometimes cleared,
+  // sometimes not.
   void probing();
-  std::uint64_t probed = 0;  // how often a probe had tripped, and missed
+  std::uint64_t probed = 0;  // how often a probe had tripped; `missed`: had been missed
   std::uint64_t missed = 0;
-  // How often it was held for under-run; a reset begins anew.
+  // Number of under-run holds; a reset clears it.
   std::uint64_t underruns = 0;
-  // Position streaming: periods that come in time or late, by any clock at any word; holds, overrides, aborts and
-  // faults in it, the mode switched in motion; ended by an END, a missing period or an abort.
+  // Position streaming: periods that are on time or late, by any number of clocks at any word; holds, overrides,
+  // aborts and faults; mode changes in motion. Ends with an END, a missing period or an abort.
   void streamed();
-  // Without it, and where the card has none, no stream.
+  // False: no streams, for cards without position streaming.
   bool streams = true;
-  // Periods that were missing, and looks at a card that went on without one.
+  // Missing periods, and observations of a card that continues a line without the next period.
   std::uint64_t missing = 0;
   std::uint64_t stale = 0;
-  // Machine inputs: some filters, captures and roles, of the inputs from 4 on, what they do, and soft limits; the next
-  // recover() takes roles and soft limits back. Without it, and where the card has none, nobody has a role but by
-  // chance.
+  // Machine inputs: some filters, captures and roles of the inputs from 4 on, their effects, and soft limits. The
+  // next recover() removes roles and soft limits. If `roles` is false, for cards without machine inputs, roles are
+  // only given by chance.
   void machine_inputs();
   void drives();
   bool roles = false;
-  // The emergency stop's button is pressed now and then; recover() lets it go.
+  // The emergency stop is pressed from time to time; recover() releases it.
   bool emergency = false;
-  // Drives that are enabled for motion, in some of the traffic of roles().
+  // Drives that are enabled for motion, in part of the traffic with `roles`.
   bool enables = false;
-  std::uint64_t enabled = 0;  // looks at drives that are, or that motion waits for
-  // How often each bit of FAULT was set, and looks at a hold by the button.
+  std::uint64_t enabled = 0;  // observations of enabled drives, or of motion that waits for them
+  // How often each bit of FAULT was set; button_holds: observations of a hold by the button.
   std::array<std::uint64_t, 32> causes{};
-  // Of the lowest bit in `mask`.
+  // The count of the lowest bit in `mask`.
   std::uint64_t causes_of(std::uint32_t mask) const {
     unsigned bit = 0;
     while ((mask >> bit & 1U) == 0) ++bit;
     return causes[bit];
   }
   std::uint64_t button_holds = 0;
-  // Looks at a capture, and at one in the queue, or one that was lost.
+  // Observations of a capture, of a queued one, and of lost ones.
   std::uint64_t captured = 0;
   std::uint64_t queued = 0;
   std::uint64_t lost = 0;
-  // Requests in disturb() and starved().
+  // Requests made in disturb() and starved().
   std::uint64_t holds = 0;
   std::uint64_t overrides = 0;
-  // Sections until `commands` were tried; disturbed after each with the given chance of one in `calm`.
+  // Runs sections until `commands` commands were tried; after each, one in `calm` is disturbed.
   void run(std::uint64_t commands, std::uint64_t calm);
-  // One act of a host: a setting, a read, a hold, a START, an abort, a reset ...
+  // One action of a host: a setting, a read, a hold, a START, an abort, a reset ...
   void disturb();
-  // START with values on and beyond every limit.
+  // START with values at and beyond every limit.
   void start();
   void settings();
-  // Everything at peace again: no hold, full ratio, no fault, nothing queued; in any order.
+  // Restores a quiet state: no hold, full ratio, no fault, nothing queued; in any order.
   void recover();
   void reset(std::uint64_t clocks);
   bool wait_idle(std::uint64_t clocks);
@@ -116,7 +117,7 @@ class Traffic {
  private:
   std::uint64_t below(std::uint64_t count) { return host_.below(count); }
   bool one_in(std::uint64_t count) { return below(count) == 0; }
-  // A number of up to `bits` bits, short ones as likely as long ones; sometimes next to a power of two.
+  // A number of up to `bits` bits, with all lengths equally likely; sometimes next to a power of two.
   std::uint64_t odd_number(unsigned bits) {
     const std::uint64_t power = std::uint64_t{1} << below(bits);
     if (one_in(3)) return power - 1 + below(3);
@@ -142,7 +143,7 @@ class Traffic {
   static constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
   std::uint32_t any_ratio() { return kRatios[below(3)]; }
   void flip_a_pin() { host_.set_pins(host_.pins() ^ 1U << below(4)); }
-  // A hold, or the end of one.
+  // Starts or ends a hold.
   void hold() {
     const auto wanted = static_cast<std::uint32_t>(below(2));
     holds += wanted;
@@ -156,13 +157,13 @@ class Traffic {
   void read_anything();
   void write_anything();
 
-  // Counts what has come since the last call.
+  // Counts the causes since the last call.
   void note_causes() {
     const std::uint32_t fault = host_.card().model().outputs().fault;
     for (unsigned bit = 0; bit < causes.size(); ++bit) causes[bit] += (fault & ~noted_) >> bit & 1U;
     noted_ = fault;
   }
-  // And mostly clears a fault, so that the next section finds the card moving.
+  // Also clears most faults, so that the card moves in the next section.
   void look_at_inputs() {
     note_causes();
     enabled += (status() & (field::kStatusEnabled | field::kStatusEnableWaits)) != 0 ? 1U : 0U;
@@ -184,8 +185,8 @@ class Traffic {
   }
 
   AxiHost& host_;
-  std::vector<std::uint32_t> roles_given_;  // registers ROLE
-  std::uint32_t noted_ = 0;                 // FAULT, as last seen
+  std::vector<std::uint32_t> roles_given_;  // addresses of ROLE registers that were written
+  std::uint32_t noted_ = 0;                 // FAULT at the last observation
   unsigned axes_;
   unsigned arc_every_;
   std::uint8_t number_ = 0;
@@ -195,7 +196,7 @@ inline void Traffic::machine_inputs() {
   for (std::uint64_t n = 2 + below(6); n != 0; --n) {
     constexpr std::uint32_t kKinds[] = {0, 0, 0, 1, 1, 1, 4};
     const auto of_axis = static_cast<std::uint32_t>(8 * kKinds[below(7)] + below(axes_));
-    // Probe, tool setter, and seldom the buttons.
+    // Probe, tool setter, and rarely the buttons.
     const auto of_card = static_cast<std::uint32_t>(48 + (one_in(6) ? 2 + below(2) : below(2)));
     const auto any = static_cast<std::uint32_t>(below(64));
     const std::uint32_t role = one_in(20) ? any : one_in(2) ? of_card : of_axis;
@@ -205,7 +206,7 @@ inline void Traffic::machine_inputs() {
     host_.write(reg::input_filter(static_cast<std::uint32_t>(below(16))), static_cast<std::uint32_t>(below(6)));
   for (std::uint64_t n = below(3); n != 0; --n) select_capture();
   const auto axis = static_cast<unsigned>(below(axes_));
-  // The probe and the tool setter mostly count; any step and shared switches seldom.
+  // The probe and the tool setter are mostly causes; any-step limits and shared switches rarely.
   const std::uint64_t counts = one_in(4) ? below(4) : 3;
   if (one_in(2))
     host_.write(reg::kStopCauses, static_cast<std::uint32_t>((below(1U << 16) & below(1U << 16)) | counts << 17));
@@ -216,12 +217,12 @@ inline void Traffic::machine_inputs() {
   if (one_in(3)) host_.set_pins(host_.pins() & 0xF);
 }
 
-// Of an input that changes; where the card has no captures it is refused.
+// Selects an input that changes. Cards without captures refuse it.
 inline void Traffic::select_capture() {
   const std::uint64_t edges = one_in(10) ? 0 : (1 + below(3)) << 8;
   std::uint32_t continuous = one_in(2) ? field::kCaptureSelectContinuous : 0;
   const std::uint32_t queue = one_in(2) ? field::kCaptureSelectQueue : 0;
-  if (queue != 0) continuous = field::kCaptureSelectContinuous;  // else no queue ever is full
+  if (queue != 0) continuous = field::kCaptureSelectContinuous;  // otherwise no queue would become full
   host_.write(reg::capture_select(static_cast<std::uint32_t>(below(4))),
               static_cast<std::uint32_t>(below(16) | edges) | continuous | queue);
 }
@@ -235,7 +236,7 @@ inline void Traffic::look_at_captures() {
   if (one_in(2)) look_at_queue();
 }
 
-// Where the card has none, all of it is refused. Sometimes the wrong capture is dropped.
+// Cards without the queue refuse all of it. Sometimes the wrong capture is dropped.
 inline void Traffic::look_at_queue() {
   for (std::uint64_t n = one_in(4) ? 20 : below(3); n != 0; --n) {
     const std::uint32_t queue = host_.read(reg::kCaptureQueue).value_or(0);
@@ -249,7 +250,7 @@ inline void Traffic::look_at_queue() {
   }
 }
 
-// Near where the axis stands.
+// Near the axis's position.
 inline void Traffic::set_soft_limits(unsigned axis) {
   host_.write(reg::kControl, field::kControlSnapshot);
   const std::uint32_t here = host_.read(reg::snap_position(axis)).value_or(0);
@@ -315,7 +316,7 @@ inline void Traffic::start() {
   if (one_in(3)) host_.wait(below(900));
 }
 
-// Mostly a register's.
+// Mostly the address of a register.
 inline std::uint32_t Traffic::any_address() {
   if (one_in(8)) return static_cast<std::uint32_t>(below(card_map::kWindowBytes));
   const card_map::Register& entry = card_map::kRegisters[below(card_map::kRegisters.size())];
@@ -403,7 +404,7 @@ inline void Traffic::recover() {
   };
   if (roles) {
     host_.write(reg::kSoftLimits, 0);
-    // Cycle start releases what the button holds.
+    // Cycle start ends a hold of the button.
     for (const std::uint32_t address : roles_given_) host_.write(address, 0);
     write_role(reg::role(51), 2);
     host_.set_pins(0);

@@ -34,7 +34,7 @@ inline void Traffic::section(bool faulty) {
     pieces.emplace_back(piece);
     left -= ticks;
   }
-  // Pieces and paths that do not add up are a fault at the next barrier.
+  // If pieces and paths do not cover the same ticks, there is a fault at the next barrier.
   if (one_in(25)) pieces.pop_back();
   auto path = geometry.begin();
   auto piece = pieces.begin();
@@ -42,7 +42,7 @@ inline void Traffic::section(bool faulty) {
     const bool geometry_next = piece == pieces.end() || (path != geometry.end() && one_in(2));
     const bool broken = faulty && one_in(12);
     if (!(geometry_next ? send_words(*path++, broken) : send(*piece++, broken))) {
-      // Refused: the rest is refused too until an abort, which need not come at once.
+      // After a refusal everything is refused until an abort, which need not come at once.
       if (!one_in(3)) abort();
       return;
     }
@@ -100,7 +100,7 @@ inline void Traffic::starved() {
 
 inline void Traffic::streamed() {
   if (!one_in(6)) recover();
-  const std::uint64_t period = 30 + below(one_in(2) ? 60 : 600);  // ticks, of two clocks or so
+  const std::uint64_t period = 30 + below(one_in(2) ? 60 : 600);  // ticks, of about two clocks
   const std::uint32_t stale_periods = static_cast<std::uint32_t>(below(4));
   const std::uint32_t mode = field::kStreamingOn | stale_periods << field::kStreamingStalePeriodsShift;
   host_.write(reg::kStopReaction, one_in(3) ? 0 : field::kStopReactionMissingPeriod);
@@ -114,7 +114,7 @@ inline void Traffic::streamed() {
     driver::encode(line(ticks, pulses), number_++, words);
     return words;
   };
-  // One piece for all, or one for each; some change their rate.
+  // One piece for all paths, or one for each; some change their rate.
   const bool single = one_in(2);
   const auto piece = [&] {
     driver::FeedCommand p = feed(one_in(3) ? 1 : period, 2);
@@ -157,13 +157,13 @@ inline void Traffic::streamed() {
 inline void Traffic::probing() {
   const double pace = 1.01 + static_cast<double>(below(40)) * 0.1;
   const auto random = [this](std::uint64_t count) { return below(count); };
-  // Inputs that nobody touches: the probe that is armed is missed.
+  // Inputs that nobody touches: the armed probe misses.
   const bool untouched = one_in(3);
   const auto touch = [this, untouched] {
     if (!untouched) flip_a_pin();
   };
   const auto input = [this] { return static_cast<std::uint8_t>(below(one_in(20) ? 16 : 4)); };
-  // Mostly for a level that the input does not have yet.
+  // Mostly for a level that the input does not have at present.
   const auto probe = [this, input, untouched] {
     const std::uint8_t n = input();
     const bool now = (host_.pins() >> n & 1) != 0;

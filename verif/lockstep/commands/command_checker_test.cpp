@@ -1,5 +1,5 @@
-// The command checker in lockstep with its model: every violation of every layout, then random streams with corrupted
-// words, scarce room, flushes, clears and writes that it is not ready for.
+// The command checker in lockstep with its model: every violation of every layout; then random streams with corrupted
+// words, little room, flushes, clears, and writes while it is not ready.
 #include "trammel/model/command_checker.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class Bench {
   void clock(const CommandChecker::Inputs& in) {
     rtl_->rst_i = in.reset;
     rtl_->write_i = in.write;
-    // A word stands still until it is answered.
+    // A word is stable until it is answered.
     if (model_.outputs().ready) word_ = in.word;
     rtl_->word_i = word_;
     rtl_->flush_i = in.flush;
@@ -126,7 +126,7 @@ void directed(Bench& bench, CommandSource& source) {
   }
 }
 
-// Drives the checker as no register file would: writes and flushes at any time, clears in the middle of words.
+// Drives the checker as no register file would: writes and flushes at any time, clears during words.
 void random_stream(Bench& bench, CommandSource& source, std::uint64_t commands) {
   auto& random = source.random();
   std::uint8_t number = 0;

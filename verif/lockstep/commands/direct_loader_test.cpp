@@ -1,5 +1,5 @@
-// Lockstep of the direct loader: START with every odd value of the registers, busy and faults in every clock, resets of
-// one clock in every state; every output in every cycle. The address is judged by the data it brings.
+// Lockstep of the direct loader: START with every corner value of the registers, busy and faults in every clock,
+// resets of one clock in every state; every output in every cycle. The address is judged by the data that it brings.
 #include "trammel/model/direct_loader.hpp"
 
 #include <Vdut.h>
@@ -28,7 +28,7 @@ class Bench {
 
   std::uint32_t& at(std::uint32_t address) { return words_[address >> 2]; }
 
-  // START with what the registers hold; until its answer, or until a reset `reset_after` clocks later.
+  // START with the present registers, until its answer, or until a reset `reset_after` clocks later.
   void start(std::uint32_t mask, unsigned reset_after = ~0U) {
     check_.event("START", mask);
     in_.mask = static_cast<std::uint8_t>(mask);
@@ -53,7 +53,7 @@ class Bench {
     in_.reset = false;
   }
 
-  // One clock in so many stands, from 0: none.
+  // The average clocks between clocks of busy, and of a fault; 0: never.
   void surroundings(unsigned busy_every, unsigned closed_every) {
     busy_every_ = busy_every;
     closed_every_ = closed_every;
@@ -133,7 +133,7 @@ void set_length(Bench& bench, std::uint64_t length) {
   bench.at(reg::kLengthHi) = static_cast<std::uint32_t>(length >> 32);
 }
 
-// Every mask; then every pair of odd frequency and count, both ways, on every axis; every odd length.
+// Every mask; then every pair of corner frequency and count, in both directions, on every axis; every corner length.
 void every_odd_value() {
   Bench bench(1);
   constexpr std::uint64_t kFrequencies[] = {0,
@@ -197,7 +197,7 @@ void random_starts() {
   EXPECT_GT(bench.moves(), starts / 20);
 }
 
-// A reset in every clock of a START whose values are refused leaves nothing to the next one, which moves.
+// A reset in every clock of a START whose values are refused: nothing remains for the next START, which moves.
 void every_reset() {
   Bench bench(1);
   constexpr unsigned kLongest = 33 + 16 * kAxes;
@@ -215,7 +215,7 @@ void every_reset() {
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
 }
 
-// Whatever the registers hold before it, one clock of reset leaves nothing under way.
+// For any initial register contents, one clock of reset leaves nothing under way.
 void power_ups() {
   for (int state = 1; state <= 300; ++state) {
     Bench bench(1, state);

@@ -1,4 +1,4 @@
-// The queue in lockstep with its model: a writer that commits, drops and clears, a reader that comes and goes.
+// The queue in lockstep with its model: a writer that commits, drops and clears, a reader that reads with pauses.
 #include "trammel/model/halfword_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ class Bench {
   Checker checker_;
   trammel::lockstep::Simulated<Vdut> rtl_;
   HalfwordQueue model_;
-  // Something has been read: the RAM's output holds it, and a clock later the port.
+  // A halfword has been read: the RAM's output is defined, and one clock later the port.
   bool ram_known_ = false;
   bool word_known_ = false;
   std::uint64_t words_ = 0;
@@ -76,7 +76,7 @@ void fill_and_drain(Bench& bench, std::uint16_t first) {
   in.commit = true;
   bench.clock(in);
   in = {};
-  in.read = true;  // goes on when it is empty: nothing may come of it
+  in.read = true;  // continues when the queue is empty: this must have no effect
   for (std::size_t i = 0; i < kDepth + 4; ++i) bench.clock(in);
 }
 

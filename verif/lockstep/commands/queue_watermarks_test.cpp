@@ -1,4 +1,4 @@
-// Lockstep of the queues' watermarks: rooms and watermarks at and around each other, both outputs in every cycle.
+// Lockstep of the queues' watermarks: rooms and watermarks close to each other; both outputs in every cycle.
 #include "trammel/model/queue_watermarks.hpp"
 
 #include <Vdut.h>
@@ -20,7 +20,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("queue_watermarks", seed) { reset(); }
 
-  // One clock, whatever comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -55,7 +55,7 @@ class Bench {
   Simulated<Vdut> dut_;
   model::QueueWatermarks model_{kGeometryDepth, kFeedDepth};
   Checker check_;
-  std::uint64_t low_ = 0;  // outputs that were
+  std::uint64_t low_ = 0;  // number of outputs that were low
 };
 
 void random_rooms() {

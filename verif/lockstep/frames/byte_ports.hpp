@@ -1,5 +1,5 @@
-// What stands around the frame engine and the ports before it in their tests: the inner port, with accesses judged or
-// answered by dice, and frames as they come.
+// The environment of the frame engine and of the ports before it in their tests: an inner port whose accesses are
+// judged or answered at random, and a source of frames.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace trammel::lockstep {
 
-// Answers each request so many clocks after it.
+// Answers each request after a given number of clocks.
 class InnerPort {
  public:
   struct Answer {
@@ -19,12 +19,12 @@ class InnerPort {
     std::uint32_t data = 0;
   };
 
-  // In the clock in which the request shows: what the answer will be, `clocks` (1 or more) later.
+  // To be called in the clock in which the request shows: defines the answer, which comes `clocks` (1 or more) later.
   void ask(unsigned clocks, bool error, std::uint32_t data) {
     left_ = clocks + 1;
     answer_ = {true, error, data};
   }
-  // What the port says in this clock.
+  // The port's answer in this clock.
   Answer now() {
     if (left_ == 0) return {};
     return --left_ == 0 ? answer_ : Answer{};
@@ -37,12 +37,12 @@ class InnerPort {
   Answer answer_;
 };
 
-// Requests one after the other as a stream of bytes: most as they are due, some not, some damaged, and noise.
+// Requests as a stream of bytes: most with the expected number and epoch, some without, some damaged, and noise.
 class FrameSource {
  public:
   explicit FrameSource(Dice& dice) : dice_(dice) {}
 
-  // The next byte, for a card that stands at this number and epoch.
+  // The next byte, for a card with this last number and epoch.
   std::uint8_t next(std::uint16_t last, std::uint16_t epoch) {
     if (waiting_.empty()) fill(last, epoch);
     const std::uint8_t byte = waiting_.front();
@@ -67,7 +67,7 @@ class FrameSource {
     r.fixed = dice_.chance(2);
     const bool moves = r.kind == frames::Kind::Read || r.kind == frames::Kind::Write;
     if (moves) r.count = static_cast<std::uint8_t>(1 + dice_.below(dice_.chance(12) ? frames::kMaxWords : 3));
-    // Past the window's end now and then; numbers and epochs that differ in one bit, or in a carry.
+    // Sometimes past the end of the window; numbers and epochs that differ in one bit, or by a carry.
     r.address = static_cast<std::uint16_t>(4 * (dice_.chance(6) ? 1020 + dice_.below(4) : dice_.below(1024)));
     r.number = static_cast<std::uint16_t>(last + (dice_.chance(4) ? 0 : 1));
     if (dice_.chance(12)) r.number = static_cast<std::uint16_t>(r.number ^ 1U << dice_.below(16));
@@ -82,7 +82,7 @@ class FrameSource {
     if (dice_.chance(4)) w = (w & ~0xFF0000U) | std::uint32_t{frames::kEnd} << 16;
     return w;
   }
-  // A good CRC over a header as no host makes it, with words or without.
+  // A good CRC over a header that no host makes, with or without words.
   void body(frames::Bytes& stream, std::uint16_t last, std::uint16_t epoch) {
     frames::Bytes b{static_cast<std::uint8_t>(dice_.chance(2) ? dice_.below(4) : dice_.below(256)),
                     static_cast<std::uint8_t>(dice_.chance(2)   ? dice_.below(3)
@@ -97,7 +97,7 @@ class FrameSource {
     const bool write = (b[0] & 3) == 3;
     std::size_t words = write ? b[1] % 64U : 0U;
     if (dice_.chance(6)) words = dice_.below(64);
-    // A read of a few words more than a reply has.
+    // A read of a few words more than a reply can have.
     if (dice_.chance(4)) {
       b[0] = 2;
       b[1] = static_cast<std::uint8_t>(59 + dice_.below(6));
@@ -106,12 +106,12 @@ class FrameSource {
     }
     for (std::size_t i = 0; i < 4 * words; ++i) b.push_back(static_cast<std::uint8_t>(dice_.below(256)));
     if (dice_.chance(6)) b.resize(b.size() - 1 - dice_.below(8));
-    // Shorter than any, with a count of which 4 words more than a byte counts.
+    // Shorter than any request, with a count whose length in bytes needs more than 8 bits.
     if (dice_.chance(8)) b = {static_cast<std::uint8_t>(dice_.chance(2) ? 3 : 0x13), 63, b[2], b[3]};
     if (dice_.chance(8)) more_than_fits(b);
     frames::append_frame(stream, b);
   }
-  // 256 bytes, then a whole ask: a place of eight bits has come round.
+  // 256 bytes, then a whole ask: an 8-bit position counter has wrapped.
   void more_than_fits(frames::Bytes& b) {
     b.assign(264, 0);
     for (unsigned i = 0; i < 256; ++i) b[i] = static_cast<std::uint8_t>(dice_.below(256));
@@ -119,10 +119,10 @@ class FrameSource {
   void damage(frames::Bytes& stream) {
     const std::uint32_t place = dice_.below(static_cast<std::uint32_t>(stream.size()));
     switch (dice_.below(7)) {
-      case 5:  // an escape of nothing
+      case 5:  // an escape without meaning
         stream.insert(stream.begin() + place, {frames::kEscape, static_cast<std::uint8_t>(dice_.below(256))});
         break;
-      case 6:  // an escape twice
+      case 6:  // a doubled escape
         for (std::size_t i = 0; i < stream.size(); ++i) {
           if (stream[i] != frames::kEscape) continue;
           stream.insert(stream.begin() + static_cast<std::ptrdiff_t>(i), frames::kEscape);

@@ -1,5 +1,5 @@
-// The card with all four host ports beside its model, pins of ports and axes in every cycle; and the rules of each
-// port, which checkers judge that know nothing of the design (verif/systemc/checkers).
+// The card with all four host ports beside its model: compares the pins of ports and axes in every cycle. The rules
+// of each port are judged by checkers that do not know the design (verif/systemc/checkers).
 #pragma once
 
 #include <Vdut.h>
@@ -62,7 +62,7 @@ class CardBehindPorts {
     compare();
   }
 
-  // One clock of reset, in which no host asks for anything.
+  // One clock of reset, in which no host makes a request.
   void reset() {
     check_.event("reset");
     in.axi = {};
@@ -81,7 +81,7 @@ class CardBehindPorts {
 
   UartEnd uart;
   SpiMaster spi;
-  model::HostPorts::Inputs in;  // of the buses: for their masters
+  model::HostPorts::Inputs in;  // of the buses; set by their masters
 
  private:
   static model::CardConfig core_config() {
@@ -109,7 +109,7 @@ class CardBehindPorts {
     return core;
   }
 
-  // Gives the checkers the RTL's pins as they stand before the edge.
+  // Gives the checkers the RTL's pins from before the edge.
   void judge_rules() {
     platform::CardInputs to;
     to.rst = dut_->rst_i != 0;

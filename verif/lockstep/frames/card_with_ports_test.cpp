@@ -1,5 +1,5 @@
-// The driver, unchanged, moves the Verilated card over the pins of its serial and of its SPI port, beside the model:
-// pins of ports and axes in every cycle.
+// The unmodified driver moves the Verilated card over the pins of its serial and of its SPI port, beside the model:
+// pins of ports and axes are compared in every cycle.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr nanoseconds kClock = 1us;  // the card runs at 1 MHz
 
-// A write of some of a register's bytes over Wishbone: whether the card took it.
+// Writes only some of a register's bytes over Wishbone. Returns whether the card accepted it.
 bool write_in_part(CardBehindPorts& card, std::uint32_t address) {
   model::WishbonePort::Inputs& bus = card.in.wishbone;
   bus.cyc = bus.stb = bus.we = true;
@@ -56,7 +56,7 @@ class SpiLink final : public driver::ByteLink {
   }
 
  private:
-  // Ends that only fill are left out, so that silence is nothing.
+  // Leaves out ends that only fill, so that silence is empty.
   void exchange(const frames::Bytes& bytes) {
     card_.spi.set(3, 4);
     card_.spi.exchange(bytes);
@@ -79,7 +79,7 @@ void a_line_over(CardBehindPorts& card, driver::ByteLink& link, std::int32_t pul
   driver::run_line(host, driver::plan_line(host.timing(), {pulses, -100}, 20ms));
   EXPECT_EQ(card.position(0) - before, static_cast<std::uint32_t>(pulses));
   EXPECT_EQ(bus.counts().sent_again, 0U);
-  // The card refuses the second one, and the third is not made.
+  // The card refuses the second access, so the third is not made.
   driver::Access accesses[] = {driver::read_of(card_map::reg::kAxes), driver::write_of(card_map::reg::kAxes, 1),
                                driver::read_of(card_map::reg::kAxes)};
   EXPECT_EQ(bus.transfer(accesses, std::size(accesses)), 1U);

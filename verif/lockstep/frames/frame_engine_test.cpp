@@ -1,5 +1,5 @@
-// Lockstep of the frame engine: requests of every kind, damaged ones and noise, with a port that takes replies and an
-// inner port that answers at random; new connections and resets at any clock.
+// Lockstep of the frame engine: requests of every kind, damaged ones and noise; the port and the inner port answer at
+// random; new connections and resets at any clock.
 #include "trammel/model/frame_engine.hpp"
 
 #include <Vdut.h>
@@ -19,10 +19,11 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("frame_engine", seed), dice_(seed), source_(dice_) { reset(); }
 
-  // `gap`: clocks from byte to byte; `pace`: how often the port takes a byte; `delay`: the most that an answer takes.
+  // `gap`: clocks from byte to byte; `pace`: the port takes a byte in one of this many clocks; `delay`: longest time
+  // of an answer.
   void random_clock(unsigned gap, unsigned pace, unsigned delay) {
     const FrameEngine::Outputs& out = model_.outputs();
-    // More often where something is just being decided.
+    // Resets are more frequent while a decision is under way.
     const bool ends = in_.byte_valid && in_.byte == frames::kEnd;
     if (dice_.chance(20000) || (inner_.open() && dice_.chance(3000)) || (ends && dice_.chance(300))) return reset();
     in_.restart = dice_.chance(restart_);
@@ -37,8 +38,8 @@ class Bench {
       if (dice_.chance(100)) return reset();
       in_.restart = in_.restart || dice_.chance(100);
     }
-    // A new connection after half an escape, with a frame from its beginning; and in the clock in which a reply is
-    // decided.
+    // A new connection after half an escape, followed by a frame from its beginning; and one in the clock in which a
+    // reply is decided.
     const bool half = last_byte_ == frames::kEscape && since_byte_ == 1 && dice_.chance(30);
     if (half) source_.clear();
     in_.restart = in_.restart || half || (++since_answer_ == 5 && dice_.chance(60));
@@ -62,7 +63,7 @@ class Bench {
   }
 
   void set_restart(unsigned one_in) { restart_ = one_in; }
-  // So many connections one after the other: epochs of all bits.
+  // Makes this many connections in sequence, to reach epochs of all bits.
   void reset_and_connect(unsigned count) {
     reset();
     for (unsigned i = 0; i < count; ++i) {
@@ -83,7 +84,7 @@ class Bench {
  private:
   bool listening() const { return model_.listening(); }
 
-  // One clock, whatever else comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -115,7 +116,7 @@ class Bench {
       check_.compare("byte_o", dut_->byte_o, out.byte);
       ++more_;
     }
-    // The access stands from its request to the answer; what no write needs may be anything.
+    // The access is stable from its request to the answer; the data of a read may be anything.
     if (!out.request && !inner_.open()) return;
     check_.compare("access, without data", dut_->access_o & ~in_place(kRequest, 1) & ~in_place(kData, ~0U),
                    in_place(kWrite, out.write) | in_place(kAddress, out.address) |
@@ -136,7 +137,7 @@ class Bench {
   unsigned since_byte_ = 0;
   unsigned since_answer_ = 0;
   std::uint8_t last_byte_ = 0;
-  unsigned restart_ = 5000;  // one in so many clocks
+  unsigned restart_ = 5000;  // one in this many clocks
   std::uint64_t requests_ = 0;
   std::uint64_t replies_ = 0;
   std::uint64_t more_ = 0;

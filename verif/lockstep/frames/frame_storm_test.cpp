@@ -1,5 +1,5 @@
-// The frame engine behind a bad link: bytes 10 clocks apart, every access judged by what the host has sent
-// (tests/support/frame_storm.hpp). The model takes no part in it.
+// The frame engine behind a bad link: bytes 10 clocks apart; every access is checked against the host's requests
+// (tests/support/frame_storm.hpp). The model is not used.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ class Bench {
 
   FrameStorm& storm() { return storm_; }
 
-  // Bodies of random bytes as long as a request without words, each with its end: what the CRC alone holds off. The
-  // link works on.
+  // Bodies of random bytes with the length of a request without words, each with its end: only the CRC rejects them.
+  // The link still works afterwards.
   void garbage(std::uint64_t frames) {
     for (std::uint64_t i = 0; i < frames; ++i) {
       frames::Bytes body{static_cast<std::uint8_t>(dice_.below(4) & 2U)};
@@ -44,7 +44,7 @@ class Bench {
 
  private:
   static constexpr unsigned kGap = 10;
-  // Longer than the engine ever goes without a sign while it has something to do.
+  // Longer than any pause of the engine while it has work to do.
   static constexpr unsigned kQuiet = 40;
 
   frames::Bytes bring(const frames::Bytes& bytes) {
@@ -60,7 +60,7 @@ class Bench {
     dut_->received_i = 0;
     for (unsigned i = 1; i < kGap; ++i) clock();
   }
-  // Neither an end nor an escape, which would change the length.
+  // Neither an end nor an escape, either of which would change the length.
   std::uint8_t byte_of_no_meaning() {
     for (;;) {
       const auto byte = static_cast<std::uint8_t>(dice_.below(256));
@@ -94,14 +94,14 @@ class Bench {
   InnerPort inner_;
   frames::Bytes reply_;
   unsigned quiet_ = 0;
-  std::uint64_t signs_ = 0;  // of life: accesses, clocks with a byte to send
+  std::uint64_t signs_ = 0;  // signs of activity: accesses, clocks with a byte to send
 };
 
 class Storm : public testing::TestWithParam<int> {};
 
 TEST_P(Storm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
   const std::uint64_t seed = seed_from_environment(static_cast<std::uint64_t>(GetParam()));
-  // Four of them: 5 * 10^5 frames, 10^7 in the long run.
+  // Four such tests: 5 * 10^5 frames together, 10^7 in the long run.
   const std::uint64_t frames = std::min<std::uint64_t>(scaled(125'000), 2'500'000);
   EXPECT_EQ(judge([&] {
               Bench bench(seed);
@@ -117,7 +117,7 @@ TEST_P(Storm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
             "");
 }
 
-// As random frames pass by chance: once in 2^32.
+// The probability that a random frame passes is 2^-32.
 TEST(Garbage, TheCrcHoldsItOff) {
   const std::uint64_t frames = scaled(50'000);
   EXPECT_EQ(judge([&] {

@@ -1,4 +1,4 @@
-// The pins of a card's host ports, which host_ports and card_with_ports name alike.
+// The pins of a card's host ports, which have the same names in host_ports and card_with_ports.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ inline std::uint32_t axi_shown(const model::Axi4LitePort::Outputs& axi) {
          std::uint32_t{axi.rresp} << 7;
 }
 
-// The same of Wishbone: acknowledgement, error, stall.
+// The same for Wishbone: acknowledgement, error, stall.
 inline std::uint64_t wishbone_shown(std::uint64_t answer) {
   return answer & ~in_place(bus::wishbone_answer::kDat, ~0U);
 }

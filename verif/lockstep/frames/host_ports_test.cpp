@@ -1,5 +1,5 @@
-// Lockstep of a card's host ports side by side, a host at each: accesses at random at the buses, requests whole and
-// damaged on the lines; every pin of every port in every cycle, and what comes to the inner port.
+// Lockstep of a card's host ports side by side, with a host at each: random accesses on the buses, good and damaged
+// requests on the lines. Compares every pin of every port in every cycle, and the accesses at the inner port.
 #include "trammel/model/host_ports.hpp"
 
 #include <Vdut.h>
@@ -52,7 +52,7 @@ class Bench {
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
-  // One clock, whatever else comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -67,7 +67,7 @@ class Bench {
     line_.break_line(1034);
   }
 
-  // As masters may: valid stays until ready.
+  // Follows the rules for masters: valid stays high until ready.
   void axi_host() {
     model::Axi4LitePort::Inputs& axi = in_.axi;
     const model::Axi4LitePort::Outputs& out = model_.axi();
@@ -134,7 +134,7 @@ class Bench {
     check_.compare("AXI4-Lite handshakes and responses", axi_shown(*dut_), axi_shown(axi));
     check_.compare("Wishbone ack, err, stall", wishbone_shown(dut_->wishbone_o), wishbone_shown(model_.wishbone()));
     check_.compare("tx_o", dut_->tx_o, model_.uart().tx);
-    // A port that is not built drives nothing.
+    // A port that is not built drives 0.
     const bool miso = kConfig.spi && model_.spi().miso;
     check_.compare("miso_o and miso_enable_o", unsigned{dut_->miso_enable_o} << 1 | dut_->miso_o,
                    unsigned{model_.spi().miso_enable} << 1 | unsigned{miso});

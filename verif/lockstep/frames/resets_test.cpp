@@ -1,4 +1,4 @@
-// A reset of one clock in each clock of accesses over every port: no port answers what was asked for before it.
+// A reset of one clock in each clock of accesses over every port: no port answers a request from before the reset.
 #include <gtest/gtest.h>
 
 #include "card_behind_ports.hpp"
@@ -9,15 +9,15 @@ namespace {
 
 namespace reg = card_map::reg;
 
-constexpr unsigned kFilled = 270;     // clocks after a reset, more than the filling of the registers takes
-constexpr unsigned kAccesses = 60;    // clocks, more than the three accesses below take together
-constexpr double kClocksOfByte = 64;  // of its 8 bits
+constexpr unsigned kFilled = 270;     // clocks after a reset, longer than the filling of the registers
+constexpr unsigned kAccesses = 60;    // clocks, longer than the three accesses below together
+constexpr double kClocksOfByte = 64;  // for its 8 bits
 
 class Masters {
  public:
   explicit Masters(CardBehindPorts& card) : card_(card) {}
 
-  // A write and a read over AXI4-Lite, a read over Wishbone. `take`: the AXI master takes its answers.
+  // A write and a read over AXI4-Lite, a read over Wishbone. `take`: the AXI master accepts its answers.
   void ask(bool take) {
     model::Axi4LitePort::Inputs& axi = card_.in.axi;
     axi.awvalid = axi.wvalid = axi.arvalid = true;
@@ -31,7 +31,7 @@ class Masters {
     bus.adr = reg::kAxes;
   }
 
-  // A request stands until it is taken, Wishbone's cycle until the answer.
+  // A request lasts until it is taken, Wishbone's cycle until the answer.
   void clock() {
     const model::Axi4LitePort::Outputs axi = card_.hosts().axi();
     const model::WishbonePort::Outputs bus = card_.hosts().wishbone();
@@ -68,19 +68,19 @@ void resets_in_accesses() {
       masters.ask(take);
       masters.clocks(at);
       card.reset();
-      // The first accesses of the first clock after it are answered once.
+      // Accesses made in the first clock after the reset are each answered once.
       masters.ask(true);
       masters.clocks(kFilled + kAccesses);
     }
   }
-  // Those before the resets were answered in part.
+  // Some of the accesses before the resets were answered too.
   EXPECT_GT(masters.written(), 2 * kAccesses);
   EXPECT_GT(masters.read(), 2 * kAccesses);
   EXPECT_GT(masters.acknowledged(), 2 * kAccesses);
   EXPECT_EQ(card.check().comparisons(), card.expected());
 }
 
-// The card is silent at once, whatever bit of its reply it was at.
+// The card is silent at once, at any bit of its reply.
 void resets_in_replies() {
   CardBehindPorts card;
   frames::Bytes ask;

@@ -1,4 +1,4 @@
-// An SPI master, clock by clock of the card: modes 0 and 3, a period of SCK that is no whole number of clocks.
+// An SPI master, in clocks of the card: modes 0 and 3, with an SCK period that is not a whole number of clocks.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@ namespace trammel::lockstep {
 
 class SpiMaster {
  public:
-  // `period`: clocks of the card, 4 or more. Takes effect when it is idle.
+  // `period`: clocks of the card, at least 4. Takes effect while idle.
   void set(unsigned mode, double period) {
     idle_sck_ = mode == 3;
     half_ = period / 2;
     if (!busy()) pins_.sck = idle_sck_;
   }
-  // An exchange: selected, these bytes, not selected again. `bits` of the last byte, 8: all of it.
+  // One exchange: select, these bytes, deselect. `bits`: bits of the last byte that are sent, 8: all.
   void exchange(const frames::Bytes& bytes, unsigned bits = 8) {
     waiting_ = bytes;
     bits_left_ = static_cast<unsigned>(8 * bytes.size()) - (8 - bits);
@@ -28,10 +28,10 @@ class SpiMaster {
     shift_ = 0;
   }
   bool busy() const { return at_ != At::Idle; }
-  // What came in the exchange, whole bytes.
+  // The whole bytes received in the exchange.
   const frames::Bytes& received() const { return received_; }
 
-  // The pins in the next clock. `miso`: as it stood a set-up time before.
+  // The pins in the next clock. `miso`: its level one set-up time before.
   model::SpiPort::Pins next(bool miso) {
     left_ -= 1;
     while (left_ <= 0 && at_ != At::Idle) step(miso);
@@ -50,9 +50,9 @@ class SpiMaster {
         left_ += 8;
         at_ = At::First;
         break;
-      case At::First:  // falling edge, or before the first rising one; the bit is put out
+      case At::First:  // falling edge, or before the first rising edge; the bit is output
         if (bits_left_ == 0) {
-          // Mode 0 goes back to low before it ends, mode 3 stays high.
+          // Mode 0 returns to low before the end, mode 3 stays high.
           pins_.sck = idle_sck_;
           at_ = At::Deselect;
           left_ += 8;
@@ -63,7 +63,7 @@ class SpiMaster {
         left_ += half_;
         at_ = At::Second;
         break;
-      case At::Second:  // rising edge: both take their bit
+      case At::Second:  // rising edge: both sides sample their bit
         pins_.sck = true;
         shift_ = static_cast<std::uint8_t>(unsigned{shift_} << 1 | (miso ? 1U : 0U));
         if (++place_ % 8 == 0) received_.push_back(shift_);

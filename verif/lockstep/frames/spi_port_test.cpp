@@ -1,5 +1,5 @@
-// Lockstep of the SPI port: exchanges in modes 0 and 3 up to a quarter of the card's clock, some cut within a byte, SCK
-// for others while it is not selected, noise on all pins, resets at any clock.
+// Lockstep of the SPI port: exchanges in modes 0 and 3 up to a quarter of the card's clock, some cut within a byte,
+// SCK for other devices while it is not selected, noise on all pins, resets at any clock.
 #include "trammel/model/spi_port.hpp"
 
 #include <Vdut.h>
@@ -20,7 +20,8 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("spi_port", seed), dice_(seed) { reset(); }
 
-  // An exchange of random bytes; what came back is what was given, one byte late. `cut`: it ends within its last byte.
+  // An exchange of random bytes; the bytes received must be those given, one byte late. `cut`: it ends within its
+  // last byte.
   void exchange(bool cut) {
     frames::Bytes bytes(1 + dice_.below(12));
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(dice_.below(256));
@@ -40,7 +41,7 @@ class Bench {
     aligned_ = !cut;
   }
 
-  // A reset at any clock of an exchange.
+  // A reset at a random clock of an exchange.
   void exchange_until_reset() {
     master_.set(dice_.chance(2) ? 0 : 3, 4);
     master_.exchange(frames::Bytes(4, static_cast<std::uint8_t>(dice_.below(256))));
@@ -56,7 +57,7 @@ class Bench {
     if (selected) aligned_ = false;
   }
 
-  // One clock, whatever else comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -118,8 +119,8 @@ class Bench {
   SpiMaster master_;
   frames::Bytes taken_;
   frames::Bytes given_;
-  std::uint8_t loaded_ = frames::kEnd;  // what comes first in the next exchange
-  bool aligned_ = true;                 // it does: the last one was not cut
+  std::uint8_t loaded_ = frames::kEnd;  // the first byte of the next exchange
+  bool aligned_ = true;                 // false after a cut exchange, when `loaded_` does not come first
   std::uint64_t bytes_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPI port and frame engine behind a bad link, at the pins: SCK at a quarter of the clock and slower, modes 0 and 3,
-// exchanges cut within a byte; every access is judged by what the host has sent.
+// exchanges cut within a byte. Every access is checked against the host's requests.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ class Bench {
   FrameStorm& storm() { return storm_; }
 
  private:
-  // The request in one exchange or in two; the reply in those after it, until nothing but ends comes.
+  // The request in one exchange or in two, the reply in the following ones, until only ends come.
   frames::Bytes bring(const frames::Bytes& bytes) {
     const unsigned mode = dice_.chance(2) ? 0 : 3;
     master_.set(mode, 4 + (dice_.chance(2) ? 0 : dice_.below(60) / 10.0));
@@ -45,7 +45,7 @@ class Bench {
       const frames::Bytes& came = exchange(frames::Bytes(24 + dice_.below(20), frames::kEnd));
       const bool ends = std::count(came.begin(), came.end(), frames::kEnd) == static_cast<std::ptrdiff_t>(came.size());
       silent = ends && !at_work_ ? silent + 1 : 0;
-      // An end that follows another only fills.
+      // An end that follows another end only fills.
       for (const std::uint8_t byte : came) {
         if (byte != frames::kEnd || (!reply.empty() && reply.back() != frames::kEnd)) reply.push_back(byte);
       }

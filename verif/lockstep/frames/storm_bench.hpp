@@ -15,7 +15,7 @@
 
 namespace trammel::lockstep {
 
-// What the storm complains of is a mismatch.
+// An error of the storm is reported as a mismatch.
 inline void run_storm(test::FrameStorm& storm, std::uint64_t frames) {
   try {
     storm.run(frames);
@@ -25,8 +25,8 @@ inline void run_storm(test::FrameStorm& storm, std::uint64_t frames) {
   }
 }
 
-// At the engine's inner port: an access is judged by the storm, and answered so many clocks later. Whether there was
-// one.
+// The engine's inner port: the storm judges each access, and the answer comes a number of clocks later. Returns
+// whether there was an access.
 template <class Dut, class Clocks>
 bool serve_access(Dut& dut, InnerPort& inner, test::FrameStorm& storm, Clocks clocks) {
   using namespace bus::register_access;
@@ -45,7 +45,7 @@ bool serve_access(Dut& dut, InnerPort& inner, test::FrameStorm& storm, Clocks cl
   return request;
 }
 
-// 10^4 frames at a port's pins, 10^5 in the long run; more than one in `connected` of them makes a connection.
+// 10^4 frames at a port's pins, 10^5 in the long run; more than one in `connected` of them makes a new connection.
 template <class Bench>
 void storm_at_pins(std::uint64_t seed, std::uint64_t connected) {
   const std::uint64_t frames = std::min<std::uint64_t>(scaled(10'000), 100'000);

@@ -1,4 +1,4 @@
-// The host's end of a serial line, clock by clock of the card: bits of so many clocks, not a whole number of them.
+// The host's end of a serial line, in clocks of the card; a bit is not a whole number of clocks.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace trammel::lockstep {
 
 class UartLine {
  public:
-  // `period`: the card's clocks of 8 bits.
+  // `period`: clocks of the card per 8 bits.
   void set_period(double period) { bit_ = period / 8; }
   double bit() const { return bit_; }
 
-  // A level for so many bits, a byte, a break with the byte that tells the rate.
+  // Queues a level for a number of bits, a byte, or a break with the byte that tells the rate.
   void hold(bool level, double bits) { waiting_.push_back({level, bits * bit_}); }
   void send(std::uint8_t byte) {
     hold(false, 1);
@@ -29,7 +29,7 @@ class UartLine {
   bool busy() const { return !waiting_.empty(); }
   void clear() { waiting_.clear(); }
 
-  // The level in the next clock. An edge falls between clocks; what is left over is carried along.
+  // The level in the next clock. Edges fall between clocks; the remainder is carried over.
   bool next() {
     gone_ += 1;
     while (!waiting_.empty() && gone_ > waiting_.front().clocks) {
@@ -40,7 +40,7 @@ class UartLine {
     return waiting_.empty() || waiting_.front().level;
   }
 
-  // The line from the card, a level a clock: a byte when its stop bit has been seen.
+  // Takes the card's line, one level per clock; returns a byte after its stop bit.
   std::optional<std::uint8_t> take(bool level) {
     since_ += 1;
     if (!running_) {
@@ -70,7 +70,7 @@ class UartLine {
 
   double bit_ = 8;
   std::deque<Stretch> waiting_;
-  double gone_ = 0;  // of the first stretch
+  double gone_ = 0;  // clocks of the first stretch that have passed
   bool running_ = false;
   double since_ = 0;  // clocks since the start bit's edge
   unsigned place_ = 0;

@@ -1,5 +1,4 @@
-// The driver's link over the pins of a card's serial port, clock by clock of the card, whose time is all the time there
-// is.
+// The driver's link over the pins of a card's serial port, in clocks of the card. Time is that of the card only.
 #pragma once
 
 #include <chrono>
@@ -12,12 +11,12 @@
 
 namespace trammel::lockstep {
 
-// What is at the host's end of the pins. Who owns it gives the card the line's level in each clock, and calls take().
+// The host's end of the pins. Its owner gives the card the line's level in each clock, and calls take().
 struct UartEnd {
   void take(bool level) {
     if (const std::optional<std::uint8_t> byte = line.take(level)) received.push_back(*byte);
   }
-  // A connection from its beginning: a break, and the byte that tells the rate.
+  // Starts a connection: a break, and the byte that tells the rate.
   void begin(double clocks_of_8_bits, double break_clocks) {
     line.clear();
     line.set_period(clocks_of_8_bits);
@@ -35,7 +34,7 @@ class UartLink final : public driver::ByteLink {
     double break_clocks = 0;
   };
 
-  // `end` must outlive it; `clock` is one clock of the card, `cycles` how many there were.
+  // `end` must outlive it; `clock` runs one clock of the card, `cycles` returns their number so far.
   UartLink(UartEnd& end, const Rate& rate, std::function<void()> clock, std::function<std::uint64_t()> cycles)
       : end_(end), rate_(rate), clock_(std::move(clock)), cycles_(std::move(cycles)) {}
 

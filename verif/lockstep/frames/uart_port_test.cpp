@@ -1,5 +1,5 @@
-// Lockstep of the serial port: breaks, baud rates that can be measured and some that cannot, bytes both ways, glitches,
-// bytes without a stop bit, resets at any clock.
+// Lockstep of the serial port: breaks, baud rates that can and cannot be measured, bytes in both directions,
+// glitches, bytes without a stop bit, resets at any clock.
 #include "trammel/model/uart_port.hpp"
 
 #include <Vdut.h>
@@ -41,12 +41,12 @@ class Bench {
   void clocks(std::uint64_t n) {
     for (std::uint64_t i = 0; i < n; ++i) clock();
   }
-  // Until all has gone over the line.
+  // Runs until the line has sent everything.
   void drain() {
     while (line_.busy()) clock();
   }
 
-  // One clock, whatever else comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -60,7 +60,7 @@ class Bench {
     line_.clear();
   }
 
-  // A glitch in one of so many clocks; a byte is offered to the line in one of so many, 0: never.
+  // A glitch in one of `glitch` clocks; a byte is offered to the line in one of `offer` clocks, 0: never.
   void disturb(unsigned glitch, unsigned offer) {
     glitch_ = glitch;
     offer_ = offer;
@@ -118,14 +118,14 @@ void random_lines() {
   for (std::uint64_t i = 0; i < length; ++i) {
     Dice& dice = bench.dice();
     bench.disturb(dice.chance(3) ? 20 + dice.below(2000) : ~0U, dice.below(8));
-    // From too fast to be taken on; 9 bits must be shorter than a break.
+    // Rates from too fast to be accepted; 9 bits must be shorter than a break.
     const double most = dice.chance(8) ? 2000 : 300;
     if (dice.chance(6)) bytes_at(bench, 8 + dice.below(20), 1);
     bytes_at(bench, 30 + dice.below(1000) / 1000.0 * most, 20);
     if (dice.chance(4)) bench.clocks(dice.below(200));
     if (dice.chance(6)) bench.reset();
     if (dice.chance(3)) {
-      // A reset within a measurement, after which the line goes on.
+      // A reset during a measurement, after which the line continues.
       bench.line().set_period(100);
       bench.line().break_line(kBreak + 8);
       bench.clocks((1 << kBreakBits) + 40 + dice.below(120));
@@ -134,26 +134,26 @@ void random_lines() {
       bench.drain();
     }
     if (bench.period() != 0 && bench.period() < 300 && dice.chance(2)) {
-      // A reset at any clock of a byte.
+      // A reset at a random clock of a byte.
       bench.line().set_period(bench.period());
       bench.line().send(static_cast<std::uint8_t>(dice.draw()));
       bench.clocks(dice.chance(2) ? dice.below(400) : bench.period() * 76 / 64 + dice.below(8));
       bench.reset();
     }
     if (dice.chance(6)) {
-      // A break twice as long is one; a reset within one, or just as it is seen, ends it.
+      // A break of twice the length counts as one; a reset within a break, or just as it is detected, ends it.
       bench.line().hold(false, 8 * 2.2 * kBreak / 100);
       if (dice.chance(2)) bench.drain();
       bench.clocks(dice.chance(4) ? dice.below(1 << kBreakBits) : (1 << kBreakBits) - 4 + dice.below(12));
       if (dice.chance(2)) bench.reset();
     }
     if (dice.chance(6)) {
-      bench.line().hold(false, 40);  // no whole break, or one without its byte
+      bench.line().hold(false, 40);  // too short for a break, or a break without its byte
       bench.drain();
     }
     if (dice.chance(6)) {
       bytes_at(bench, 100, 3);
-      bench.line().clear();  // the line is high in the middle of something
+      bench.line().clear();  // the line goes high in the middle of a byte or break
     }
   }
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
@@ -162,7 +162,7 @@ void random_lines() {
   EXPECT_GT(bench.breaks(), length);
 }
 
-// A rate near the counter's end, one beyond it, and a break that is a clock too short.
+// A rate near the end of the counter, one beyond it, and a break that is one clock too short.
 void slow_lines() {
   const std::uint64_t seed = seed_from_environment(20261122);
   Bench bench(seed);

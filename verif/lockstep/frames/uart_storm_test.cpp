@@ -1,5 +1,5 @@
-// Serial port and frame engine behind a bad line, at the pins: 8 to 25 clocks a bit, a new rate with each break; every
-// access is judged by what the host has sent.
+// Serial port and frame engine behind a bad line, at the pins: 8 to 25 clocks per bit, a new rate with each break.
+// Every access is checked against the host's requests.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ class Bench {
     for (quiet_ = 0; quiet_ < longest;) clock();
     return reply_;
   }
-  // A new rate: from 25 clocks a bit, 4 Mbaud at 100 MHz, to a third of that.
+  // A new rate: sometimes 25 clocks per bit (4 Mbaud at 100 MHz), otherwise 8 to 25.
   void restart() {
     line_.set_period(dice_.chance(4) ? 200 : 64 + dice_.below(1360) / 10.0);
     line_.break_line((1 << TRAMMEL_BREAK_BITS) + 10);

@@ -1,5 +1,5 @@
-// Lockstep of the AXI4-Lite port between a random master and a random register file. Data is compared where its valid
-// or request makes it mean something.
+// Lockstep of the AXI4-Lite port between a random master and a random register file. Data is compared while its valid
+// or request is high.
 #include "trammel/model/axi4_lite_port.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : checker_("axi4_lite_port", seed), random_(seed) { reset(); }
 
-  // One clock, whatever else comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     rtl_->rst_i = 1;
     drive();
@@ -54,7 +54,7 @@ class Bench {
   std::uint32_t draw() { return static_cast<std::uint32_t>(random_()); }
   bool chance(std::uint32_t one_in) { return draw() % one_in == 0; }
 
-  // Valid stays until its ready; a new access may follow at once.
+  // Valid stays high until its ready; a new access may follow at once.
   void random_master() {
     const Axi4LitePort::Outputs& out = model_.outputs();
     if (handshake_.aw) in_.awvalid = false;

@@ -1,5 +1,5 @@
-// Lockstep of the port arbiter with 2 to 4 ports that ask at random, and a core that answers at random; resets at any
-// clock. The access is compared where a request stands, the answer of each port in every cycle.
+// Lockstep of the port arbiter with 2 to 4 ports that make requests at random, and a core that answers at random;
+// resets at any clock. The access is compared during a request, the answer of each port in every cycle.
 #include "trammel/model/port_arbiter.hpp"
 
 #include <Vdut.h>
@@ -22,7 +22,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("port_arbiter", seed), dice_(seed), model_(kPorts) { reset(); }
 
-  // A port asks again at the earliest in the clock after its answer; the core answers when it likes.
+  // A port makes a new request at the earliest in the clock after its answer; the core answers at a random time.
   void random_clock(unsigned ask_every, unsigned answer_every) {
     for (unsigned port = 0; port < kPorts; ++port) {
       PortArbiter::Access& access = accesses_[port];
@@ -105,7 +105,7 @@ class Bench {
       check_.compare("error", answered(answer::kError), get(dut_->answer_i, answer::kError));
       check_.compare("data", answered(answer::kData), get(dut_->answer_i, answer::kData));
     }
-    // The access stands from its request to the answer.
+    // The access is stable from its request to the answer.
     if (!asked_) return;
     const PortArbiter::Access& a = accesses_[inner.port];
     check_.compare("access", dut_->access_o & ~in_place(kRequest, 1),
@@ -121,7 +121,7 @@ class Bench {
   PortArbiter model_;
   PortArbiter::Accesses accesses_{};
   bool waiting_[PortArbiter::kMaxPorts] = {};
-  bool asked_ = false;  // the core
+  bool asked_ = false;  // the core has a request to answer
   std::uint64_t answers_[PortArbiter::kMaxPorts] = {};
   std::uint64_t more_ = 0;
 };

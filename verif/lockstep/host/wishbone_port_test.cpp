@@ -38,7 +38,7 @@ class Bench {
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
-  // One clock, whatever else comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -54,7 +54,8 @@ class Bench {
     compare();
   }
 
-  // Classic: STB and what goes with it stand until the answer. Pipelined: until no stall. In both some masters give up.
+  // Classic: STB and its signals are stable until the answer; pipelined: until there is no stall. In both modes some
+  // masters give up.
   void master(unsigned pace) {
     const WishbonePort::Outputs& out = model_.outputs();
     if (out.ack || out.err) ++answers_;
@@ -62,7 +63,7 @@ class Bench {
     if (gone && !(kPipelined && dice_.chance(2))) in_.stb = false;
     if (in_.cyc && dice_.chance(60)) {
       given_up_ += in_.stb || open_ ? 1 : 0;
-      in_.cyc = dice_.chance(3);  // or STB alone
+      in_.cyc = dice_.chance(3);  // drops CYC, or only STB
       in_.stb = false;
     }
     if (!in_.stb || gone) {
@@ -116,7 +117,7 @@ class Bench {
       check_.compare("dat_o", dut_->dat_o, out.dat);
       ++more_;
     }
-    // The access stands from its request to the answer.
+    // The access is stable from its request to the answer.
     if (!out.request && !open_) return;
     check_.compare("access", dut_->access_o & ~in_place(kRequest, 1),
                    in_place(kWrite, out.write) | in_place(kPartial, out.partial) | in_place(kAddress, out.address) |
@@ -129,9 +130,9 @@ class Bench {
   Dice dice_;
   WishbonePort model_;
   WishbonePort::Inputs in_;
-  bool taken_ = false;  // pipelined: the last STB was
-  bool open_ = false;   // at the register file
-  bool known_ = false;  // dat_o has a value
+  bool taken_ = false;  // pipelined: the last STB was accepted
+  bool open_ = false;   // the register file has a request to answer
+  bool known_ = false;  // dat_o is defined
   std::uint32_t wait_ = 0;
   std::uint64_t requests_ = 0;
   std::uint64_t answers_ = 0;

@@ -1,6 +1,6 @@
-// Lockstep of the queue of captures: snapshots written to the units' areas and to others, captures that pass alone and
-// together, a host that reads, drops, drops twice or the wrong one, and falls behind; resets. Every output in every
-// cycle.
+// Lockstep of the queue of captures: snapshots written to the units' areas and to others, captures that pass alone
+// and together, a host that reads, drops, drops twice or the wrong one, and is too slow; resets. Every output in
+// every cycle.
 #include "trammel/model/capture_fifo.hpp"
 
 #include <Vdut.h>
@@ -20,7 +20,7 @@ namespace field = card_map::field;
 
 constexpr std::uint64_t kComparedSignals = 4;
 constexpr unsigned kUnits = 4;
-constexpr unsigned kFilling = 16;  // clocks after a reset, in which nothing passes
+constexpr unsigned kFilling = 16;  // clocks after a reset in which nothing passes
 
 class Bench {
  public:
@@ -41,7 +41,7 @@ class Bench {
     compare({});
   }
 
-  // `store`: a word of a snapshot. The word of the oldest capture shows two clocks later.
+  // `store`: the word of a snapshot that is written. The selected word of the oldest capture shows two clocks later.
   void clock(const Inputs& in, const model::Setting& store, unsigned word) {
     if (in.passed != 0) check_.event("passed", in.passed);
     drive(in, store, word);
@@ -78,7 +78,7 @@ class Bench {
     check_.compare("queued_o", dut_->queued_o, model::CaptureFifo::queued(in.passed));
     check_.compare("full_o", dut_->full_o, model_.full());
     check_.compare("state_o", dut_->state_o, model_.word());
-    // What was asked before a reset is nobody's.
+    // A read requested before a reset has no defined answer.
     check_.compare("data_o", since_reset_ < 2 ? 0 : dut_->data_o, since_reset_ < 2 ? 0 : read_[1]);
   }
 
@@ -90,8 +90,8 @@ class Bench {
   std::uint64_t since_reset_ = 0, full_ = 0, empty_ = 0, lost_ = 0;
 };
 
-// The snapshot writer and the capture units: an area is written from its last word down, and its capture passes then,
-// at once or later. Areas that are no unit's come between.
+// Imitates the snapshot writer and the capture units: an area is written from its last word down, and then its
+// capture passes, at once or later. Areas of other snapshots come in between.
 class Units {
  public:
   explicit Units(Dice& dice) : dice_(dice) {}
@@ -104,7 +104,7 @@ class Units {
   model::Setting store(Bench& bench) {
     if (left_ == 0) {
       if (dice_.chance(6)) begin();
-      // What stands on the bus beside no word is not stored.
+      // Address and data without `set` are not stored.
       return {false, static_cast<std::uint32_t>(card_map::Area::Capture0) + 4 * dice_.below(64), dice_.draw()};
     }
     --left_;
@@ -113,7 +113,7 @@ class Units {
     if (left_ == 0 && unit_ < kUnits) written_ |= 1U << unit_;
     return {true, address_ + 4 * left_, value};
   }
-  // Those that hand on a capture; `told` was in the clock before.
+  // The units that hand on a capture; `told`: those told in the last clock.
   std::uint8_t passed(unsigned told) {
     passed_ &= ~told;
     const unsigned passes = dice_.chance(4) ? written_ : dice_.chance(30) ? written_ & dice_.draw() : 0;
@@ -135,15 +135,15 @@ class Units {
   }
 
   Dice& dice_;
-  unsigned left_ = 0;  // words of the snapshot under way
-  unsigned unit_ = 0;  // whose it is; kUnits or more: nobody's
+  unsigned left_ = 0;  // words left of the snapshot under way
+  unsigned unit_ = 0;  // its unit; kUnits or more: an area of no unit
   std::uint32_t address_ = 0;
   unsigned written_ = 0;  // units whose snapshot is complete
-  unsigned soon_ = 0;     // they pass in the next clock: the last word is on its way
+  unsigned soon_ = 0;     // units that pass in the next clock: their last word is on its way
   unsigned passed_ = 0;
 };
 
-// The right number mostly; other writes now and then.
+// Mostly the right number; sometimes other writes.
 model::Setting drop(Dice& dice, std::uint32_t word) {
   const std::uint32_t oldest = word >> field::kCaptureQueueOldestShift & 0xF;
   if (dice.chance(6)) return {true, reg::kCaptureClear, oldest};
@@ -157,7 +157,7 @@ void captures_and_drops() {
   Dice dice(seed);
   Units units(dice);
   unsigned told = 0;
-  unsigned drops_every = 8;  // clocks; at 100 the host falls behind
+  unsigned drops_every = 8;  // clocks; at 100 the host is too slow
   const std::uint64_t length = scaled(600'000);
   for (std::uint64_t i = 0; i < length; ++i) {
     Bench::Inputs in;

@@ -1,6 +1,6 @@
-// Lockstep of the capture units: any levels at all, and levels that bounce behind real filters with snapshots that come
-// late; selections, clears and resets at any clock; a queue that takes captures late, and is full. Every output in
-// every cycle.
+// Lockstep of the capture units: arbitrary levels, and levels that bounce behind real filters with snapshots that
+// come late; selections, clears and resets at any clock; a queue that takes captures late, and is full. Every output
+// in every cycle.
 #include "trammel/model/captures.hpp"
 
 #include <Vdut.h>
@@ -21,7 +21,7 @@ namespace field = card_map::field;
 
 constexpr unsigned kUnits = TRAMMEL_CAPTURES;
 constexpr bool kQueue = TRAMMEL_QUEUE != 0;
-constexpr std::uint64_t kComparedSignals = 4;  // and one more in each clock without a reset
+constexpr std::uint64_t kComparedSignals = 4;  // plus one more in each clock without a reset
 
 class Bench {
  public:
@@ -39,7 +39,7 @@ class Bench {
     compare({});
   }
 
-  // Both must give the same in the clock itself, too.
+  // The combinational outputs must be equal in the clock itself, too.
   void clock(const Inputs& in) {
     if (in.setting.set) check_.event("setting", std::uint64_t{in.setting.address} << 32 | in.setting.data);
     drive(in);
@@ -93,7 +93,7 @@ class Bench {
   std::uint64_t valid_ = 0, overruns_ = 0, touches_ = 0, queued_ = 0;
 };
 
-// Of the first inputs, so that units often share one.
+// Selects one of the first inputs, so that units often share one.
 model::Setting random_setting(Dice& dice, unsigned inputs) {
   if (dice.chance(2)) return {true, reg::kCaptureClear, dice.below(16)};
   const std::uint32_t edges = dice.chance(8) ? 0 : (1 + dice.below(3)) << 8;
@@ -102,7 +102,7 @@ model::Setting random_setting(Dice& dice, unsigned inputs) {
   return {true, reg::capture_select(dice.below(4)), dice.below(inputs) | edges | continuous | queue};
 }
 
-// One of those that hand on a capture is told, the lowest or another one, now or later.
+// One unit that hands on a capture is told, the lowest or another one, now or later.
 void answer_queue(Dice& dice, Bench::Inputs& in, unsigned passed) {
   in.queued = 0;
   in.full = dice.chance(4);
@@ -111,7 +111,7 @@ void answer_queue(Dice& dice, Bench::Inputs& in, unsigned passed) {
   in.queued = static_cast<std::uint8_t>(dice.chance(2) ? lowest : passed & 1U << dice.below(4));
 }
 
-// Levels, quiet and snapshots in any order, also such as no filter gives.
+// Levels, quiet and snapshots in any order, including combinations that no filter gives.
 void any_levels() {
   const std::uint64_t seed = seed_from_environment(20261127);
   Bench bench(seed);
@@ -122,10 +122,10 @@ void any_levels() {
     if (dice.chance(3)) in.raw ^= dice.draw() & dice.draw();
     if (dice.chance(4)) in.levels ^= (in.raw ^ in.levels) & dice.draw();
     if (dice.chance(3)) in.quiet = dice.draw();
-    // What stands on the bus beside no setting is nothing to the units.
+    // Address and data without `set` must have no effect.
     in.setting = dice.chance(20) ? random_setting(dice, 32) : model::Setting{};
     in.setting.set = in.setting.set && dice.chance(3);
-    // The units that are told have asked in this clock.
+    // Units are told only if they have asked in this clock.
     in.captured = static_cast<std::uint8_t>(dice.chance(4) ? bench.asks(in) & dice.draw() : 0);
     answer_queue(dice, in, bench.passed());
     bench.clock(in);
@@ -138,7 +138,8 @@ void any_levels() {
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
 }
 
-// Inputs that stand and bounce, of which every other one has a filter; the writer takes one snapshot after another.
+// Inputs that are constant and then bounce; every other one has a filter. The writer takes one snapshot after
+// another.
 void bouncing_inputs() {
   constexpr unsigned kInputs = 6;
   const std::uint64_t seed = seed_from_environment(20261128);

@@ -1,5 +1,5 @@
-// Lockstep of the card's inputs: random pins, polarities, filters, roles and resets. What an input promises is judged
-// beside the model, too: a level that is gone sooner than its filter says is not seen, nor is a role of it.
+// Lockstep of the card's inputs: random pins, polarities, filters, roles and resets. One promise is also judged
+// without the model: a level shorter than its filter length is not seen, neither as a level nor as a role.
 #include "trammel/model/card_inputs.hpp"
 
 #include <Vdut.h>
@@ -26,7 +26,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("card_inputs", seed) { reset(); }
 
-  // Until settings may be written. Pins are active meanwhile, as early as in the reset.
+  // Runs until settings may be written. Pins are active during that time, and already in the reset.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -34,7 +34,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model::CardInputs fresh(kAxes, kInputs, TRAMMEL_ENGINES);
-    // A reset leaves the RAMs alone.
+    // A reset does not change the RAMs.
     fresh.state().filter.state().lengths = model_.state().filter.state().lengths;
     fresh.state().filter.state().counts = model_.state().filter.state().counts;
     fresh.state().filter.state().length_read = model_.state().filter.state().length_read;
@@ -78,7 +78,7 @@ class Bench {
   Checker check_;
 };
 
-// Any of the settings that the block takes, and the words beside its arrays.
+// Any setting that the block takes, and the words next to its arrays.
 model::Setting random_setting(Dice& dice) {
   switch (dice.below(6)) {
     case 0:
@@ -102,7 +102,7 @@ void random_pins() {
   const std::uint64_t length = scaled(300'000);
   for (std::uint64_t i = 0; i < length; ++i) {
     if (dice.chance(100)) pins ^= std::uint32_t{1} << dice.below(kInputs);
-    // Words and data stand on the bus beside no setting, too.
+    // Address and data are random without `set`, too.
     model::Setting setting = dice.chance(50) ? random_setting(dice) : model::Setting{};
     setting.set = setting.set && dice.chance(2);
     bench.clock({dice.chance(40) ? dice.draw() : pins, setting});
@@ -116,7 +116,7 @@ void random_pins() {
   }
 }
 
-// A pulse of input 1 that is so many clocks long, and whether input and role, of an axis's positive end, saw it.
+// A pulse of input 1 of a number of clocks; whether the input, and the role of an axis's positive limit, saw it.
 struct Seen {
   bool raw = false, level = false, role = false;
 };
@@ -131,7 +131,8 @@ Seen pulse(Bench& bench, unsigned clocks) {
   return seen;
 }
 
-// With a filter of 3 scans: at most 3 scans are not seen, 4 are; without a filter a single clock is.
+// With a filter of 3 scans, a pulse of 3 scans is not seen and one of 4 is; without a filter, one of a single clock
+// is.
 void pulses() {
   Bench bench(1);
   bench.set(reg::role(8 + 2), 2, 0);

@@ -1,5 +1,5 @@
 // Lockstep of the inputs' filter: levels that bounce, single pulses of every length around the limit, and other
-// settings. A second checker knows only what went in and what came out.
+// settings. A second checker knows only the inputs and the outputs.
 #include "trammel/model/input_filter.hpp"
 
 #include <Vdut.h>
@@ -20,12 +20,12 @@ constexpr unsigned kInputs = TRAMMEL_INPUTS;
 constexpr std::uint32_t kAll = static_cast<std::uint32_t>((std::uint64_t{1} << kInputs) - 1);
 constexpr bool kQuiet = TRAMMEL_QUIET != 0;
 constexpr std::uint64_t kScan = 64;
-constexpr unsigned kSettles = 4;  // clocks: a look whose length has been read already counts by the old one
+constexpr unsigned kSettles = 4;  // clocks: a look that has already read its length still uses the old one
 
-// What the filter promises, in clocks, of outputs that were seen and levels that were driven.
+// The filter's promise, in clocks, in terms of the levels driven and the outputs seen.
 class Promise {
  public:
-  // The levels of one clock, and the outputs behind its edge.
+  // The levels of one clock, and the outputs after its edge.
   void clock(std::uint32_t levels, std::uint32_t outputs, std::uint32_t quiet) {
     if (kQuiet) judge_quiet(levels, outputs, quiet);
     for (unsigned n = 0; n < kInputs; ++n) {
@@ -43,7 +43,7 @@ class Promise {
     }
     outputs_ = outputs;
   }
-  // While a level lasts, both the lengths before and after may hold.
+  // While a level lasts, both the old and the new length may apply.
   void set(unsigned input, std::uint64_t length) {
     if (input >= kInputs) return;
     One& one = inputs_[input];
@@ -60,8 +60,8 @@ class Promise {
   std::uint64_t too_long() const { return too_long_; }
 
  private:
-  // An input becomes quiet when its level has stood for the length, as it passes or with the output, and is when it has
-  // agreed with the output for a scan longer; it is not where it differs.
+  // An input may become quiet when its level has lasted for the length, as it passes or together with the output. It
+  // must be quiet when it has agreed with the output for one scan more. It must not be quiet while it differs.
   void judge_quiet(std::uint32_t levels, std::uint32_t outputs, std::uint32_t quiet) {
     for (unsigned n = 0; n < kInputs; ++n) {
       const std::uint32_t bit = std::uint32_t{1} << n;
@@ -83,7 +83,7 @@ class Promise {
 
   struct One {
     std::uint64_t stood = 0, agreed = 0;                // clocks
-    unsigned settles = 0;                               // clocks until the last length holds
+    unsigned settles = 0;                               // clocks until only the last length applies
     std::uint64_t differs = 0;                          // clocks
     std::uint64_t length = 0, least = 0, greatest = 0;  // scans
   };
@@ -98,7 +98,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("input_filter", seed) { reset(); }
 
-  // Until lengths may be set.
+  // Runs until lengths may be set.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -108,13 +108,13 @@ class Bench {
     dut_->rst_i = 0;
     const model::InputFilter::State before = model_.state();
     model_ = model::InputFilter(kQuiet);
-    // A reset leaves the RAM alone.
+    // A reset does not change the RAM.
     model_.state().lengths = before.lengths;
     model_.state().counts = before.counts;
     model_.state().length_read = before.length_read;
     promise_ = Promise();
     compare();
-    // Levels meanwhile pass by no length of before, and no length is taken.
+    // In this time old lengths must not apply, and new ones must not be taken.
     for (std::uint64_t i = 0; i < kScan; ++i) clock({i % 3 == 0 ? 0 : kAll, false, 0, 0xFFFF});
     for (std::uint64_t i = 0; i < 2 * kScan; ++i) clock({});
   }
@@ -136,7 +136,7 @@ class Bench {
     clock({0, true, input, length});
     for (unsigned i = 0; i < kSettles; ++i) clock({});
   }
-  // A level that lasts so long, and then quiet for as long as the filter may need.
+  // A level of this many clocks, and then rest for as long as the filter may need. Returns whether it passed.
   bool passes(unsigned input, std::uint64_t clocks, std::uint64_t length) {
     const std::uint32_t bit = std::uint32_t{1} << input;
     bool seen = false;
@@ -169,7 +169,7 @@ void expect_kept(const Promise& promise) {
   EXPECT_EQ(promise.bad_quiet(), 0U);
 }
 
-// Pulses from every clock of a scan on: none of length * 64 clocks passes, each of 64 more does.
+// Pulses that start in every clock of a scan: none of length * 64 clocks passes; each that is 64 clocks longer does.
 void single_pulses() {
   Bench bench(0);
   unsigned some = 0;
@@ -190,7 +190,7 @@ void single_pulses() {
   expect_kept(bench.promise());
 }
 
-// Levels that keep for some clocks or some scans and bounce in between; lengths that change meanwhile; resets.
+// Levels that last some clocks or some scans and bounce in between; lengths that change at the same time; resets.
 void bouncing_levels() {
   const std::uint64_t seed = seed_from_environment(20261124);
   Bench bench(seed);

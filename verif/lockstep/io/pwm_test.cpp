@@ -1,4 +1,4 @@
-// Pulses on outputs beside their golden model: every pin in every clock, before its edge and behind it.
+// Pulses on outputs beside their golden model: every pin in every clock, before and after its edge.
 #include "trammel/model/pwm.hpp"
 
 #include <Vdut.h>
@@ -19,7 +19,7 @@ namespace reg = card_map::reg;
 using Pins = std::remove_reference_t<decltype(Vdut::level_i)>;
 constexpr unsigned kOutputs = TRAMMEL_OUTPUTS;
 constexpr std::uint32_t kPresent = (1U << kOutputs) - 1;
-constexpr std::uint64_t kComparedSignals = 1;  // and one more in each clock without a reset
+constexpr std::uint64_t kComparedSignals = 1;  // plus one more in each clock without a reset
 
 class PwmBench {
  public:
@@ -47,7 +47,7 @@ class PwmBench {
     compare();
   }
 
-  // A command's halfwords in three clocks, taken with the last one.
+  // Sends the halfwords of a command in three clocks; the command is taken with the last one.
   void send(unsigned channel, const model::Pwm::Order& order) {
     const unsigned select = channel | (order.follows ? 0x10U : 0U) | unsigned{order.shift} << 8;
     const std::uint16_t words[] = {static_cast<std::uint16_t>(select), order.duty, order.gain};
@@ -60,7 +60,7 @@ class PwmBench {
     in_.load = {};
     in_.take = false;
   }
-  // What was sent is whole a clock later.
+  // A sent command is complete one clock later.
   void apply() {
     clock();
     in_.apply = true;
@@ -76,7 +76,7 @@ class PwmBench {
   void wait(unsigned clocks) {
     for (unsigned i = 0; i < clocks; ++i) clock();
   }
-  // Of so many clocks those in which output 0 has its level, here not the idle one.
+  // The number of clocks, out of `clocks`, in which output 0 is not at its idle level.
   unsigned lit(unsigned clocks) {
     unsigned on = 0;
     for (unsigned i = 0; i < clocks; ++i) {
@@ -215,7 +215,8 @@ void random_traffic() {
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
 }
 
-// An on-time at every rate, ratio and scale against the closed form, which knows no 17 bits: to a clock of the period.
+// On-times at every rate, ratio and scale equal the closed form, computed without the limit of 17 bits, to one clock
+// of the period.
 void closed_form() {
   PwmBench bench(seed_from_environment(20261129));
   constexpr std::uint32_t kPeriod = 9000;
@@ -225,7 +226,7 @@ void closed_form() {
   bench.in().speed.runs = bench.in().speed.gives = true;
   Dice& dice = bench.dice();
   for (unsigned i = 0; i < 40; ++i) {
-    const double nominal = 0x1p31 * (1 + dice.below(1000)) / 1000;  // of 2^-32
+    const double nominal = 0x1p31 * (1 + dice.below(1000)) / 1000;  // unit: 2^-32 ticks per clock
     const double share = (1 + dice.below(999)) / 1000.0;
     const auto duty = static_cast<std::uint16_t>(3000 + dice.below(62'000));
     const double u = nominal * 0x1p-32;
@@ -247,7 +248,8 @@ void closed_form() {
   }
 }
 
-// Full is a level without an end, none is none; a command waits for its place, and one that is dropped never comes.
+// Full duty is a constant level, and duty 0 has no pulse. A command waits for its place on the path; a dropped one
+// never takes effect.
 void ends_of_the_range() {
   PwmBench bench(7);
   bench.set(reg::kPwmPeriod1, 100);
@@ -279,7 +281,7 @@ void ends_of_the_range() {
   EXPECT_EQ(lit(1000), 0U);
 }
 
-// Where a duty follows, nothing is on without motion; a gap between paths is none.
+// If the duty follows the speed, nothing is on without motion; a gap between paths counts as motion.
 void rest_is_dark() {
   PwmBench bench(8);
   bench.set(reg::kPwmPeriod0, 3000);
@@ -315,7 +317,7 @@ void rest_is_dark() {
   }
 }
 
-// Channel 1 with the length that its period has after a reset.
+// Channel 1 with the period that it has after a reset.
 void period_after_a_reset() {
   PwmBench bench(12);
   bench.set(reg::kPwmOutputs, 0x00010000);
@@ -327,7 +329,7 @@ void period_after_a_reset() {
   EXPECT_EQ(bench.lit(3 * period), 3 * period / 2);
 }
 
-// So many PWM commands, each of which ends the work on an on-time before it is done.
+// Sends `times` PWM commands; each one cancels the computation of an on-time before it is done.
 void send_at_once(PwmBench& bench, unsigned times, const model::Pwm::Order& order) {
   for (unsigned i = 0; i < times; ++i) {
     bench.send(0, order);
@@ -335,8 +337,8 @@ void send_at_once(PwmBench& bench, unsigned times, const model::Pwm::Order& orde
   }
 }
 
-// No on-time comes before the first period of a new length, which is written at each clock of the work on one: the
-// period has no pulse.
+// A new period is written at each clock of the computation of an on-time. No on-time is ready before the first period
+// of the new length, so that period has no pulse.
 void first_period_without_an_on_time() {
   PwmBench bench(9);
   constexpr unsigned kPeriod = 400;
@@ -356,8 +358,8 @@ void first_period_without_an_on_time() {
   }
 }
 
-// No on-time comes in the last clocks of a period, in which alone it is worked out: the pulse is that of before, though
-// the speed has changed meanwhile.
+// No on-time is ready in the last clocks of a period, the only ones in which it is computed: the pulse keeps its old
+// length, although the speed has changed.
 void period_without_an_on_time() {
   PwmBench bench(11);
   const model::Pwm::Order order{true, 0, 0xFFFF, 0xFFFF};
@@ -373,8 +375,8 @@ void period_without_an_on_time() {
   EXPECT_GT(bench.pulses(), 50U);
 }
 
-// The greatest rates whose product is still rounded down to nothing, and the next ones: that with the ratio, made large
-// by shift and gain; and that with the gain.
+// The largest rates whose product is still rounded down to nothing, and the next larger ones: the product with the
+// ratio, amplified by shift and gain; and the product with the gain.
 void rounding_down() {
   PwmBench bench(10);
   bench.set(reg::kPwmOutputs, 1);

@@ -1,5 +1,5 @@
-// Lockstep of the scan of roles: random levels, masks and resets. A second checker knows only the levels, the masks and
-// what came out.
+// Lockstep of the scan of roles: random levels, masks and resets. A second checker knows only the levels, the masks
+// and the outputs.
 #include "trammel/model/role_scan.hpp"
 
 #include <Vdut.h>
@@ -21,7 +21,8 @@ constexpr std::uint32_t kAll = static_cast<std::uint32_t>((std::uint64_t{1} << k
 constexpr unsigned kRoles = 64;
 constexpr unsigned kLatest = kRoles + 3;  // clocks until an output follows: a scan, and a mask that is being read
 
-// Which bit of the outputs a role is, in the order of input_roles_pkg; none of a role that the outputs do not have.
+// The bit of a role in the outputs, in the order of input_roles_pkg; negative for a role that the outputs do not
+// have.
 int bit_of(unsigned role) {
   switch (role) {
     case 48:
@@ -40,7 +41,7 @@ int bit_of(unsigned role) {
   return role / 8 == 4 ? static_cast<int>(16 + role % 8) : -1;
 }
 
-// What the scan promises: an output has the level that its role's inputs have had for longer than a scan.
+// The scan's promise: an output has the level that its role's inputs have had for longer than a scan.
 class Promise {
  public:
   void clock(std::uint32_t levels, std::uint32_t outputs) {
@@ -55,7 +56,7 @@ class Promise {
       settled_ += one.same > kLatest ? 1 : 0;
       active_ += one.same > kLatest && level ? 1 : 0;
       wrong_ += one.same > kLatest && seen != level ? 1 : 0;
-      // Bits of roles that nobody has are not among these.
+      // All other bits belong to no role: they must be 0.
       outputs &= ~(std::uint32_t{1} << bit);
     }
     wrong_ += outputs != 0 ? 1 : 0;
@@ -83,7 +84,8 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("role_scan", seed) { reset(); }
 
-  // Until masks may be set. Levels are active meanwhile: no mask of before may count, and none is taken.
+  // Runs until masks may be set. Levels are active during that time: old masks must not apply, and new ones must not
+  // be taken.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -91,7 +93,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model::RoleScan::State state;
-    // A reset leaves the RAM alone.
+    // A reset does not change the RAM.
     state.masks = model_.state().masks;
     state.mask_read = model_.state().mask_read;
     model_.state() = state;

@@ -1,4 +1,4 @@
-// The motion core beside its golden model: drives both with the same words, registers and pins, and compares every
+// The motion core beside its golden model. Drives both with the same words, registers and pins, and compares every
 // output in every cycle.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace trammel::lockstep {
 namespace reg = card_map::reg;
 
 constexpr unsigned kAxes = TRAMMEL_AXES;
-// What is built in: what is missing is asked for by nobody, since checker and registers refuse it.
+// The engines that are built in. Missing ones are never used, because checker and registers refuse them.
 constexpr bool kArcs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator);
 constexpr bool kChords = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kArcGenerator);
 constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
@@ -37,7 +37,7 @@ constexpr std::uint64_t kComparedSignals = 45 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
-// The registers of direct mode as the loader reads them: the word at an address, two clocks later.
+// The registers of direct mode as the loader reads them: the word at an address, two clocks late.
 class LoaderRam {
  public:
   void clock(std::uint16_t address) {
@@ -106,7 +106,7 @@ class MotionCoreBench {
     if (kSoftLimits && !in_.setting.set && place_dice_.chance(400)) random_soft_limit();
     if (kPwm && !in_.setting.set && place_dice_.chance(2000)) random_pwm();
     if (dice_.chance(3000)) marks_near_a_carry();
-    // While a START is answered no word is written: what it finds queued is all there is.
+    // While a START is answered no word is written, so that the queues contain only what START finds.
     if (kDirectMode && !starting_ && geometry_.done() && feed_.done() && dice_.chance(start_every_)) random_start();
     if (dice_.chance(50 * abort_every_))
       reset();
@@ -114,8 +114,8 @@ class MotionCoreBench {
       clock();
   }
 
-  // OUTPUT and MARK wait for the end of a path of every length round their decoding; they, their effect and what is
-  // decoded meanwhile meet an abort and a reset in every clock.
+  // OUTPUT and MARK wait for the end of paths of every length around their decoding. An abort and a reset come in
+  // every clock of the commands, of their effect, and of later decoding.
   void commands_around_ends() {
     for (unsigned ticks = 1; ticks < 60; ++ticks) {
       commands_behind(ticks, 100, Programs::mark());
@@ -135,8 +135,8 @@ class MotionCoreBench {
     }
   }
 
-  // On the ramp of a stop a MARK takes effect, behind an OUTPUT that switched an output off: what the cause switched on
-  // stays on, though OUTPUT_SAFE_CAUSE names it no more.
+  // During the ramp of a stop a MARK takes effect, after an OUTPUT that switched an output off. An output that the
+  // cause switched on stays on, although OUTPUT_SAFE_CAUSE no longer names it.
   void mark_behind_a_cause() {
     reset();
     in_ = {};
@@ -159,7 +159,7 @@ class MotionCoreBench {
     in_ = {};
   }
 
-  // A probe's edge at each clock round the begin of PROBE_END, with a line behind it; cleared at once or late.
+  // A probe's edge at each clock around the start of PROBE_END, with a line after it; cleared at once or late.
   void edges_around_the_end() {
     for (const unsigned ticks : {0U, 3U}) {
       for (unsigned edge = 0; edge < 110; ++edge) {
@@ -176,7 +176,7 @@ class MotionCoreBench {
     in_ = {};
   }
 
-  // STREAMING is switched on at each clock round the one in which the first command ends the card's rest.
+  // STREAMING is switched on at each clock around the one in which the first command ends the card's rest.
   void streaming_set_around_the_begin() {
     for (unsigned clocks = 0; clocks < 40; ++clocks) {
       reset();
@@ -192,8 +192,8 @@ class MotionCoreBench {
     in_ = {};
   }
 
-  // The emergency stop disables the drives in motion, at a tick in every clock, though its reaction is a ramp: what is
-  // owed stays so.
+  // The emergency stop disables the drives in motion, at a tick in every clock, although its reaction is a ramp:
+  // ticks that are owed stay owed.
   void drives_disabled_in_motion() {
     for (unsigned at = 0; at < 40; ++at) {
       reset();
@@ -216,7 +216,7 @@ class MotionCoreBench {
     in_ = {};
   }
 
-  // Where a duty follows, a path that waits for its drives is dark, whatever its piece's rate.
+  // If the duty follows the speed, there are no pulses while a path waits for its drives, at any rate of its piece.
   void pulses_while_drives_wait() {
     reset();
     in_ = {};
@@ -241,7 +241,7 @@ class MotionCoreBench {
     in_ = {};
   }
 
-  // A HOLD round the begin of a fixed piece whose path comes later: it takes at once.
+  // A HOLD around the start of a fixed piece whose path comes later takes effect at once.
   void holds_before_the_path() {
     for (unsigned clocks = 0; clocks < 90; clocks += 3) {
       reset();
@@ -307,7 +307,7 @@ class MotionCoreBench {
     for (unsigned i = 0; i < 40; ++i) clock();
   }
 
-  // The RTL has passed more MARKs than the model.
+  // Makes the RTL count more MARKs than the model.
   void marks_near_a_carry() {
     if constexpr (kPathCommands) {
       const auto marks = static_cast<std::uint32_t>(dice_.before_carry(32));
@@ -324,13 +324,13 @@ class MotionCoreBench {
     stretch_every_ = dice_.chance(3) ? 1000 : 10;
     programs_.wrong_every = dice_.chance(3) ? 10 : 1000;
     programs_.longest = dice_.chance(2) ? 20 : 300;
-    // Drives that are slow make step faults; mostly they are quick.
+    // Slow drives cause step faults; mostly they are quick.
     slow_ = dice_.chance(4);
-    // Long without anything, so that the programs run, and then often.
+    // Mostly rare input changes, so that the programs run; sometimes frequent ones.
     inputs_every_ = dice_.chance(3) ? 100 : 20'000;
   }
 
-  // The emergency stop's cause, and its latch, which changes outputs alone; of the other dice.
+  // The emergency stop's cause, and its latch, which changes only outputs; from the second random generator.
   void random_emergency() {
     const bool was = emergency_;
     if (kEmergencyStop && place_dice_.chance(emergency_ ? 20 : 100'000)) emergency_ = !emergency_;
@@ -339,7 +339,7 @@ class MotionCoreBench {
     in_.emergency = emergency_;
   }
 
-  // One role changes; what is active does not stay so for long.
+  // Changes one role; no role stays active for long.
   void random_role() {
     const auto axis = static_cast<std::uint8_t>(1U << dice_.below(kAxes));
     const auto turn = [&](std::uint8_t& mask) { mask = mask != 0 ? std::uint8_t{0} : axis; };
@@ -403,7 +403,7 @@ class MotionCoreBench {
     if (in_.setting.set) check_.event("setting", std::uint64_t{address} << 32 | data);
   }
 
-  // Pulses that are short enough for a path.
+  // Pulses short enough for the length of a path.
   void random_pwm() {
     const bool outputs = place_dice_.chance(3);
     in_.setting = {true,
@@ -414,8 +414,8 @@ class MotionCoreBench {
     check_.event("setting", std::uint64_t{in_.setting.address} << 32 | in_.setting.data);
   }
 
-  // Places come back soon after they were lost. They change no motion, and have dice of their own, so that the programs
-  // are the same without them.
+  // Lost places are soon set again. They change no motion and use a random generator of their own, so that the
+  // programs do not depend on them.
   void random_place() {
     Dice& dice = place_dice_;
     const bool keeps = dice.chance(8);
@@ -427,7 +427,7 @@ class MotionCoreBench {
     check_.event("setting", std::uint64_t{in_.setting.address} << 32 | in_.setting.data);
   }
 
-  // Near where the axis stands; mostly switched off again, so that programs go on.
+  // Near the axis's position; mostly switched off again, so that programs continue.
   void random_soft_limit() {
     Dice& dice = place_dice_;
     const unsigned axis = dice.below(kAxes);
@@ -442,7 +442,7 @@ class MotionCoreBench {
     check_.event("setting", std::uint64_t{address} << 32 | data);
   }
 
-  // Delays are some thousand clocks for each unit: mostly none, and seldom a sequence at all.
+  // A unit of a delay is some thousand clocks: delays are mostly 0, and enable sequences are rare.
   static model::Setting enable_setting(Dice& dice) {
     switch (dice.below(8)) {
       case 0:
@@ -464,7 +464,7 @@ class MotionCoreBench {
     }
   }
 
-  // Mostly a move that can be made; else one value is off.
+  // Mostly a possible move; otherwise one value is wrong.
   void random_start() {
     for (unsigned axis = 0; axis < kAxes; ++axis) {
       std::uint64_t frequency = dice_.log_uniform(40) + 1;
@@ -489,7 +489,7 @@ class MotionCoreBench {
     model_ram_.write(address, data);
   }
 
-  // One clock of reset, whatever comes in it; the pins stand at the strap's levels.
+  // One clock of reset, with random other inputs; the pins have the levels of the strap.
   void reset() {
     idle_level_ = dice_.draw() & ((1U << 2 * kAxes) - 1);
     output_idle_ = static_cast<std::uint16_t>(dice_.below(1U << kOutputs));
@@ -559,8 +559,8 @@ class MotionCoreBench {
     if (model_->loader().done) starting_ = false;
   }
 
-  // From the far end: RATIO, RATE, FEED_BEGUN, GEOMETRY_BEGUN, POSITION of each axis; only 20 bits pass RATIO; REST has
-  // the ticks that are left in the place of RATIO and RATE.
+  // From the far end: RATIO, RATE, FEED_BEGUN, GEOMETRY_BEGUN, POSITION of each axis; RATIO passes on only 20 bits.
+  // REST has the ticks left in the place of RATIO and RATE.
   void advance_chain() {
     const model::Sequencer& sequencer_model = model_->sequencer();
     const auto& sequencer = sequencer_model.outputs();
@@ -717,14 +717,14 @@ class MotionCoreBench {
   bool emergency_ = false;
   bool latched_ = false;  // the emergency stop's latch
   std::uint32_t mask_ = 0;
-  std::uint32_t marks_ahead_ = 0;  // of the model, in the RTL
+  std::uint32_t marks_ahead_ = 0;  // MARKs that the RTL counts more than the model
   bool starting_ = false;
   bool slow_ = false;
-  unsigned inputs_every_ = 1000;  // clocks from one change of a role to the next
+  unsigned inputs_every_ = 1000;  // average clocks between two changes of a role
   unsigned abort_every_ = 20'000;
   unsigned start_every_ = 5000;
   unsigned stretch_every_ = 10;
-  unsigned write_every_ = 1;  // one halfword in so many clocks
+  unsigned write_every_ = 1;  // one halfword in this many clocks
   std::uint64_t steps_ = 0;
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;
@@ -732,7 +732,7 @@ class MotionCoreBench {
   std::uint64_t soft_limits_ = 0;
   std::uint64_t lost_places_ = 0;
   std::uint64_t waits_ = 0;
-  std::uint8_t valid_ = 0;  // axes with a valid place, a clock ago
+  std::uint8_t valid_ = 0;  // axes with a valid place, one clock ago
   std::uint64_t beyond_ = 0;
   std::uint64_t marks_ = 0;
   std::uint64_t missing_ = 0;

@@ -17,7 +17,7 @@ void random_programs() {
   if (kClasses) bench.holds_before_the_path();
   if (kEnables) bench.drives_disabled_in_motion();
   if (kEnables && kPwm) bench.pulses_while_drives_wait();
-  // What went before makes most of the steps of a short run, and is as long in a long one.
+  // The directed scenarios above make most of the steps of a short run, and do not grow in a long one.
   const std::uint64_t directed_clocks = bench.check().cycles();
   const std::uint64_t directed_steps = bench.steps();
   if (kPathCommands) {

@@ -1,4 +1,5 @@
-// The arc generator with the axes that make its steps: path ticks reach them a clock after the generator.
+// The arc generator with the axes that make its steps. Path ticks reach the axes one clock after
+// the generator.
 `default_nettype none
 
 module arc_axes #(
@@ -10,8 +11,8 @@ module arc_axes #(
     input  wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input  wire logic                           start_i,
     input  wire logic                           tick_i,
-    input  wire logic                           swap_i,        // of the axes
-    input  wire logic                           line_tick_i,   // theirs alone
+    input  wire logic                           swap_i,        // swap of the axes
+    input  wire logic                           line_tick_i,   // tick for the axes only
     input  wire logic [               Axes-1:0] active_i,
     output logic      [                   15:0] chord_word_o,
     output logic      [               Axes-1:0] chord_load_o,

@@ -1,6 +1,6 @@
-// Lockstep of the arc generator with the axes that make its steps: arcs of every shift and chord length, ticks as fast
-// as they go or with gaps, starts right behind the load, ends and clears at any clock. Every output in every cycle, and
-// every step at its tick by the rule of the increments alone.
+// Lockstep of the arc generator with the axes that make its steps: arcs of every shift and chord length, ticks at
+// full speed or with gaps, starts directly after the load, ends and clears at any clock. Every output in every cycle;
+// and every step at its tick, by the rule of the increments alone.
 #include "trammel/model/arc_generator.hpp"
 
 #include <Vdut.h>
@@ -21,28 +21,28 @@ namespace {
 namespace load_target = model::load_target;
 
 constexpr unsigned kAxes = 3;
-constexpr unsigned kStepDelay = 5;  // from the generator's tick to path_step
+constexpr unsigned kStepDelay = 5;  // clocks from the generator's tick to path_step
 constexpr std::int64_t kOne = std::int64_t{1} << 40;
 
 struct Arc {
   model::ChordRotation::State state;
-  std::array<std::int64_t, kAxes> first{};  // of an axis outside the plane: its increment
+  std::array<std::int64_t, kAxes> first{};  // first increment; of an axis outside the plane: its only one
   unsigned axis_x = 0;
   unsigned axis_y = 1;
   bool active = true;
 };
 
-// The increment in force at each path tick, by the rule: first, then chords that end at odd halves for y, at even ones
-// for x.
+// The increment at each path tick by the rule: first the loaded one, then chords, which end at odd halves for y and
+// at even halves for x.
 class Rule {
  public:
   explicit Rule(const Arc& arc) : arc_(arc), rotation_{arc.state} {
-    // The two first chords are made one after the other, y's first.
+    // The two first chords are made in sequence, y's first.
     increment_[1] = rotation_.chord_y();
     increment_[0] = rotation_.chord_x();
   }
 
-  // Of the axes, at the next path tick: bit n a step of axis n, bit n + 8 its direction.
+  // The steps of the axes at the next path tick: bit n is a step of axis n, bit n + 8 its direction.
   unsigned tick() {
     ++tick_;
     unsigned steps = 0;
@@ -78,7 +78,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("arc_generator", seed), dice_(seed) { reset(); }
 
-  // Loads an arc, starts it at once or later, runs `ticks` path ticks of it (0: fewer than it can be cleared by).
+  // Loads an arc, starts it at once or later, and runs `ticks` path ticks of it; a clear may end it earlier.
   void run(const Arc& arc, std::uint64_t ticks, unsigned every, unsigned clear_in) {
     load(arc);
     check_.event("start", arc.state.k | arc.state.m << 8);
@@ -88,9 +88,9 @@ class Bench {
     clock();
     in_.start = false;
     std::uint64_t stalls = 0;
-    bool one_before = dice_.chance(2);  // a tick may have been taken before ready falls
+    bool one_before = dice_.chance(2);  // one tick may be taken before ready falls
     for (std::uint64_t made = 0, clocks = 0; made < ticks; ++clocks) {
-      // A tick that is taken in the clock of ready comes four clocks later.
+      // A tick allowed by ready arrives four clocks later.
       const bool granted = ready_ & 0x10;
       if ((clear_in != 0 && dice_.chance(clear_in)) || end_after_-- == 0) return end();
       const bool before = one_before && clocks >= 3 && clocks < 12 && dice_.chance(3);
@@ -131,9 +131,9 @@ class Bench {
 
   Checker& check() { return check_; }
   Dice& dice() { return dice_; }
-  // The next arc is over so many clocks after its start, a reset now and then instead.
+  // The next arc ends this many clocks after its start; sometimes by a reset instead.
   void end_after(unsigned clocks) { end_after_ = clocks; }
-  // After its tenth tick the next arc gets none for so many clocks.
+  // The next arc gets no tick for this many clocks after its tenth tick.
   void pause(unsigned clocks) { pause_ = clocks; }
   std::uint64_t steps() const { return steps_; }
   std::uint64_t ticks() const { return ticks_; }
@@ -147,7 +147,7 @@ class Bench {
   void load(const Arc& arc) {
     const unsigned plane = (arc.state.clockwise ? 1U : 0U) | arc.axis_x << 4 | arc.axis_y << 8;
     send(load_target::kChordPlane, plane, 1);
-    // Bits that nothing names.
+    // Random values in the unused bits.
     send(load_target::kChordShifts, arc.state.k | arc.state.m << 8 | (dice_.draw() & 0xE0E0), 1);
     send(load_target::kChordState, static_cast<std::uint64_t>(arc.state.x), 4);
     send(load_target::kChordState, static_cast<std::uint64_t>(arc.state.y), 4);
@@ -162,7 +162,7 @@ class Bench {
       in_.load = halfword(target, value, i);
       clock();
       in_.load = {};
-      if (dice_.chance(8)) {  // for somebody else, or nobody
+      if (dice_.chance(8)) {  // for another block, or for none
         const std::array<std::uint16_t, 3> others{load_target::kTicks, load_target::kPrescale, load_target::kCommand};
         in_.load = {dice_.chance(2), others[dice_.below(3)], static_cast<std::uint16_t>(dice_.draw())};
         clock();
@@ -171,7 +171,7 @@ class Bench {
     }
   }
 
-  // The arc is over, in any clock; the next load may come at once.
+  // The arc ends, in any clock; the next load may follow at once.
   void end() {
     const bool reset_instead = dice_.chance(40);
     check_.event("end");
@@ -234,7 +234,7 @@ class Bench {
     }
     check_.compare("path_step_o", dut_->path_step_o, step);
     check_.compare("path_dir_o", dut_->path_dir_o, dir);
-    // A step that a clear finds on its way to the shaper is made.
+    // A step that is on its way to the shaper at a clear is still made.
     const unsigned made = step | (dir & step) << 8;
     check_.compare("steps by the rule", made, in_.clear ? made : expected_.front());
     steps_ += step != 0 ? 1U : 0U;
@@ -255,11 +255,11 @@ class Bench {
   std::array<model::Axis, kAxes> axes_{model::Axis(0), model::Axis(1), model::Axis(2)};
   Inputs in_;
   bool tick_late_ = false;
-  unsigned step_ = 0;  // that the rule makes of the tick in this clock
+  unsigned step_ = 0;  // the rule's steps for the tick in this clock
   std::array<unsigned, kStepDelay> expected_{};
   std::uint64_t end_after_ = UINT64_MAX;
   unsigned pause_ = 0;
-  std::uint32_t ready_ = 0;  // in the last clocks
+  std::uint32_t ready_ = 0;  // ready in the last clocks, bit 0 is the latest
   Checker check_;
   Dice dice_;
   std::uint64_t steps_ = 0;
@@ -272,13 +272,14 @@ std::int64_t up_to(Dice& dice, std::int64_t limit) {
   return dice.chance(2) ? -magnitude : magnitude;
 }
 
-// A circle whose chords are at most half a pulse a tick, so that with closing increments no axis makes more than one.
+// A circle whose chords are at most half a pulse per tick, so that even with closing increments no axis makes more
+// than one.
 Arc circle(Dice& dice, unsigned k, unsigned m) {
   Arc arc;
   arc.state.k = static_cast<std::uint8_t>(k);
   arc.state.m = static_cast<std::uint8_t>(m);
   arc.state.clockwise = dice.chance(2);
-  // X and Y stay near the circle's radius: 2^(38 + k), but at most 2^62.
+  // X and Y stay near the radius of the circle: 2^(38 + k), but at most 2^62.
   const unsigned bits = std::min(38 + k, 62U) - (dice.chance(3) ? dice.below(30) : 0);
   const double radius = std::ldexp(1 + static_cast<double>(dice.below(1000)) / 1001, static_cast<int>(bits) - 1);
   const double angle = static_cast<double>(dice.draw()) * 0x1p-32 * 2 * 3.14159265358979;
@@ -292,7 +293,7 @@ Arc circle(Dice& dice, unsigned k, unsigned m) {
   return arc;
 }
 
-// No curve at all: every bit in use; its axes are not active, since increments that are too large break their rule.
+// Not a curve: every bit is in use. The axes are not active, because too large increments would break their rule.
 Arc noise(Dice& dice) {
   Arc arc = circle(dice, dice.below(32), 5 + dice.below(3));
   arc.state.x = static_cast<std::int64_t>(dice.word()) >> dice.below(63);
@@ -321,7 +322,7 @@ void random_arcs() {
   std::cout << bench.check().cycles() << " cycles of arcs compared, " << bench.steps() << " with steps\n";
 }
 
-// One arc at a path tick every clock and the shortest chords, for thousands of chords: no stall after the start.
+// One arc with a path tick in every clock and the shortest chords, for thousands of chords: no stall after the start.
 void every_clock() {
   Bench bench(seed_from_environment(20261123));
   for (const unsigned k : {1U, 5U, 15U, 16U, 27U}) bench.run(circle(bench.dice(), k, 5), 40'000, 1, 0);
@@ -329,7 +330,7 @@ void every_clock() {
   EXPECT_EQ(bench.ticks(), 200'000U);
 }
 
-// An arc that is over in any clock after its start, and the next one loaded from the following clock on.
+// An arc ends in any clock after its start, and the next one is loaded from the following clock on.
 void ends_at_every_clock() {
   Bench bench(seed_from_environment(20261125));
   for (unsigned clocks = 0; clocks < 120; ++clocks)
@@ -337,7 +338,7 @@ void ends_at_every_clock() {
       for (const unsigned every : {1U, 1U, 3U}) {
         bench.end_after(clocks);
         Arc arc = circle(bench.dice(), k, 5);
-        // All ones stay in the chain that a load passes, with a carry behind them.
+        // A chain of ones, with a carry after it, must not disturb the next load.
         if (clocks % 2 != 0) arc.state.x = -1;
         bench.run(arc, 1000, every, 0);
         bench.run(circle(bench.dice(), k, 5), 50, 1, 0);
@@ -345,7 +346,7 @@ void ends_at_every_clock() {
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
 }
 
-// The first swap of a half chord in each clock of the next ones' computation.
+// The first swap of a half chord comes in each clock of the computation of the next ones.
 void pauses() {
   Bench bench(seed_from_environment(20261126));
   for (unsigned clocks = 0; clocks < 60; ++clocks)
@@ -356,7 +357,7 @@ void pauses() {
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
 }
 
-// Chords so long that the upper bits of the tick's number count: three halves of each.
+// Chords so long that the upper bits of the tick count matter: three halves of each.
 void long_chords() {
   Bench bench(seed_from_environment(20261124));
   for (unsigned m = 11; m <= 20; ++m) {
@@ -366,7 +367,7 @@ void long_chords() {
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
 }
 
-// Where m is below 5 no half chord ever ends: both axes keep their first chords.
+// If m is below 5 no half chord ever ends: both axes keep their first chords.
 void no_half_ends() {
   Bench bench(seed_from_environment(20261127));
   for (unsigned m = 0; m < 5; ++m)

@@ -1,4 +1,5 @@
-// What counts on the path, as one top for its lockstep: a count shifted in and counted down, and the commands begun.
+// The counters of the path, as one top for their lockstep: a count that is shifted in and counted
+// down, and the commands begun.
 `default_nettype none
 
 module counters (

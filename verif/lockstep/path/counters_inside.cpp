@@ -9,7 +9,7 @@ constexpr std::uint32_t kTop = (1U << 20) - 1;
 
 }  // namespace
 
-// The RTL keeps both parts inverted.
+// The RTL stores both parts inverted.
 std::uint64_t slow_count(const Vdut& dut) {
   const std::uint64_t top = dut.rootp->counters__DOT__ticks__DOT__top_q ^ kTop;
   return top << 16 | (dut.rootp->counters__DOT__ticks__DOT__mid_q ^ 0xFFFFU);

@@ -1,6 +1,6 @@
-// Lockstep of the counters with their closed forms: the next tick is the last one when one is left, whatever the count
-// and its word boundaries; three clocks after a tick it says how many are left; the zero flag is the chain's; commands
-// begun count, and are 0 behind a cut.
+// Lockstep of the counters with their closed forms: the next tick is the last one if one is left, for any count and
+// at its word boundaries; three clocks after a tick the number of ticks left is correct; the zero flag is that of the
+// chain; commands begun are counted, and are 0 after a cut.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ class Bench {
     compare();
   }
 
-  // Shifts a count in while the one before it still runs.
+  // Shifts a count in while the previous one still runs.
   void load(std::uint64_t count, unsigned take_of_16) {
     check_.event("count", count);
     for (unsigned i = 0; i < 3; ++i) {
@@ -45,7 +45,8 @@ class Bench {
     for (int i = 0; i < 3; ++i) clock(take_of_16, false);
   }
 
-  // Takes the count loaded last; a tick beside it still belongs to the one before. Then `clocks` clocks.
+  // Takes the count loaded last; a tick in the same clock still belongs to the previous one. Then runs up to `clocks`
+  // clocks.
   void begin(unsigned take_of_16, std::uint64_t clocks) {
     check_.event("swap");
     clock(take_of_16, true);
@@ -57,7 +58,7 @@ class Bench {
     while (left_ != 0) clock(take_of_16, false);
   }
 
-  // A count at 2^bit, bit 5 to 39, with the fast bits full, and the ticks that make it borrow from that bit.
+  // Sets a count of 2^bit, bit 5 to 39, with all fast bits set, and runs the ticks that make it borrow from that bit.
   void borrow_from(unsigned bit) {
     load(kCountMask, 0);
     begin(0, 4);
@@ -81,7 +82,7 @@ class Bench {
     const bool ahead = dice_.chance(50);
     if (ahead) begun_ = dut_->begun_o = static_cast<IData>(dice_.before_carry(32));  // the register itself
     dut_->snapshot_i = dice_.snapshot();
-    // In a mutated block Verilator keeps a copy of the register for the snapshot, which follows with the next edge.
+    // In a mutated block Verilator keeps a copy of the register for the snapshot, which is updated at the next edge.
     if (ahead) dut_->snapshot_i &= ~in_place(bus::snapshot::kStrobe, 1);
   }
 
@@ -133,7 +134,8 @@ class Bench {
   std::uint64_t lasts_ = 0;
 };
 
-// Every count around each boundary of the counter's parts and of the chain's halfwords, at a tick a clock to the end.
+// Every count around each boundary of the counter's parts and of the chain's halfwords, with a tick in every clock to
+// the end.
 void boundaries() {
   Bench bench(1);
   std::uint64_t paths = 0;
@@ -149,14 +151,14 @@ void boundaries() {
     for (std::uint64_t count = (1U << bit) - 2; count <= (1U << bit) + 18; ++count) run(count);
   }
   for (const unsigned beside : {0U, 1U, 15U, 16U}) run((1U << 20) + beside);
-  // Two laps of the upper part, all borrows in between.
+  // Two rounds of the upper part, with all borrows in between.
   run((std::uint64_t{2} << 20) + 0x10000);
   EXPECT_EQ(bench.lasts(), paths);
   EXPECT_EQ(bench.check().comparisons(), bench.comparisons());
   EXPECT_GT(bench.check().cycles(), 6U << 20U);
 }
 
-// Resets with one tick left, and a cut beside some of them: a count begins at once.
+// Resets with one tick left, some with a cut in the same clock: a count can begin at once.
 void resets() {
   Bench bench(seed_from_environment(20261121));
   const std::uint64_t paths = scaled(1000);
@@ -169,7 +171,7 @@ void resets() {
   EXPECT_EQ(bench.check().comparisons(), bench.comparisons());
 }
 
-// Counts whose end is far away: `last` stays low, and the next one begins in their midst (a cut).
+// Counts whose end is far away: `last` stays low, and the next count begins before the end (a cut).
 void random_counts() {
   Bench bench(seed_from_environment(20261118));
   Dice& dice = bench.dice();

@@ -1,4 +1,4 @@
-// What an accumulator can be loaded with: circles, ellipses, lines, far ends, and values that fill every width.
+// Loads for an accumulator: circles, ellipses, lines, far ends, and values that use every width.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ inline int128 any128(Random& random) {
   return static_cast<int128>(upper | random());
 }
 
-// b^2 x^2 + a^2 y^2 - a^2 b^2 in units of 1/scale pulse, about a centre with fraction.
+// b^2 x^2 + a^2 y^2 - a^2 b^2 in units of 1/scale pulse, about a centre with a fraction.
 inline Path conic(Random& random, std::int64_t a, std::int64_t b, std::int64_t scale) {
   const double from = static_cast<double>(between(random, 0, 6283)) / 1000;
   const double to = static_cast<double>(between(random, 0, 6283)) / 1000;
@@ -75,7 +75,7 @@ inline Path line(Random& random) {
   return path;
 }
 
-// No curve at all: every bit of every word in use, carries through all of them, ends of any size.
+// Not a curve: every bit of every word is in use, with carries through all of them and ends of any size.
 inline Path noise(Random& random) {
   Path path;
   const auto shrink = [&] { return random() % 2 == 0 ? 48 : static_cast<int>(between(random, 48, 127)); };
@@ -94,8 +94,8 @@ inline Path noise(Random& random) {
   return path;
 }
 
-// Ends beyond half of a coordinate's range, on the near side or the far one, with no quadrant to go: walked to straight
-// as soon as the other coordinate is there, so that the first steps show the sign.
+// Ends beyond half of a coordinate's range, on the near or the far side, with no quadrant change left. The walk goes
+// straight as soon as the other coordinate has reached its end, so that the first steps show the sign.
 inline Path far_end(Random& random) {
   Path path = conic(random, between(random, 1, 60), between(random, 1, 60), 1);
   const std::int64_t far = between(random, std::int64_t{1} << 30, (std::int64_t{1} << 31) - 1);
@@ -134,17 +134,17 @@ inline Path any_path_in_4(Random& random) {
   }
 }
 
-// `eight`: every other one in 8 directions.
+// `eight`: every other path is in 8 directions.
 inline Path any_path(Random& random, bool eight) {
   Path path = any_path_in_4(random);
   path.eight_directions = eight && random() % 2 != 0;
   return path;
 }
 
-// The bits of the field `plane` beside its axes.
+// The bits of the field `plane` besides its axes.
 inline unsigned rule_bits(const Path& path) { return (path.clockwise ? 1U : 0U) | (path.eight_directions ? 2U : 0U); }
 
-// Chains in the order of the load bus's targets, from DEVIATION on: how many halfwords, and what goes in.
+// Chains in the order of the load bus's targets, from DEVIATION on: number of halfwords, and contents.
 inline constexpr std::array<unsigned, 9> kChainHalfwords{5, 5, 5, 3, 3, 2, 2, 1, 1};
 inline std::array<int128, 9> chains(const Path& path) {
   return {path.deviation, path.gradient_x, path.gradient_y, path.half_x,    path.half_y,

@@ -1,6 +1,6 @@
-// The deviation accumulator beside its golden model: circles, ellipses, lines and values that fill every width,
-// loaded in any order, with ticks as fast as they go or with gaps, reloaded at once, cleared at any moment. In 4
-// directions, and in 8 where TRAMMEL_EIGHT says that they are built in.
+// The deviation accumulator beside its golden model: circles, ellipses, lines and values that use every width, loaded
+// in any order, with ticks at full speed or with gaps, reloaded at once, cleared at any time. In 4 directions, and in
+// 8 if TRAMMEL_EIGHT says that they are built in.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class Bench {
   explicit Bench(std::uint64_t seed) : checker("deviation_accumulator", seed) {
     Model::Inputs reset;
     reset.rst = true;
-    // The direction outputs are unknown before the first edge under reset; from it on everything is compared.
+    // The direction outputs are unknown before the first edge under reset; from then on everything is compared.
     clock(reset);
   }
 
@@ -62,7 +62,7 @@ class Bench {
   Model model_;
 };
 
-// A halfword on the bus for another unit, or none.
+// A halfword for another unit on the bus, or no halfword.
 Model::Inputs not_its_own(Random& random) {
   Model::Inputs in;
   using namespace model::load_target;
@@ -85,7 +85,7 @@ void load(Bench& bench, Random& random, const Path& path, bool gaps) {
       while (gaps && random() % 4 == 0) bench.clock(not_its_own(random));
     }
   }
-  // The displacements and the quadrants are in a clock before the start.
+  // The displacements and the quadrants are loaded at least one clock before the start.
   const auto last = model::load_target::kDeviation + static_cast<unsigned>(order.back());
   if (last == model::load_target::kEndX || last == model::load_target::kEndY || last == model::load_target::kQuadrants)
     bench.clock(not_its_own(random));
@@ -95,12 +95,12 @@ void load(Bench& bench, Random& random, const Path& path, bool gaps) {
   bench.clock(start);
 }
 
-// Ticks until the end, `limit` clocks or a clear or reset in any state.
+// Ticks until the end, for at most `limit` clocks, or until a clear or reset in any state.
 void run(Bench& bench, Random& random, std::uint64_t limit) {
   const std::uint64_t gap = random() % 3 == 0 ? random() % 20 : 0;
   const bool cut = random() % 8 == 0;
-  const bool stubborn = random() % 4 == 0;  // ticks while not ready, and at the end, change nothing
-  const bool beside = random() % 2 == 0;    // others are loaded meanwhile
+  const bool stubborn = random() % 4 == 0;  // ticks while not ready, and at the end, must change nothing
+  const bool beside = random() % 2 == 0;    // other units are loaded at the same time
   for (std::uint64_t i = 0; i < limit; ++i) {
     const bool ready = bench.outputs().ready;
     if (ready && bench.outputs().at_end) {
@@ -122,7 +122,7 @@ void run(Bench& bench, Random& random, std::uint64_t limit) {
   Model::Inputs tick_at_end;
   tick_at_end.tick = bench.outputs().ready && bench.outputs().at_end;
   if (random() % 2 == 0) bench.clock(tick_at_end);
-  // A path cut off by the limit may be in a step: a reload comes only at rest.
+  // A path ended by the limit may be in a step; a reload comes only at rest.
   for (unsigned i = 0; i < Model::kTickPeriod + Model::kCompareClocks && !bench.outputs().ready; ++i) bench.clock({});
 }
 

@@ -1,5 +1,5 @@
-// Lockstep of the path engines: arcs on either engine and lines one after the other, ticks at random, the next arc's
-// state loaded while a line runs, cuts and resets at any clock; every output in every cycle.
+// Lockstep of the path engines: arcs on either engine and lines in sequence, random ticks, the state of the next arc
+// loaded while a line runs, cuts and resets at any clock; every output in every cycle.
 #include "trammel/model/path_engines.hpp"
 
 #include <Vdut.h>
@@ -17,7 +17,7 @@ namespace load_target = model::load_target;
 constexpr std::uint8_t kLines = card_map::engine::kLines;
 constexpr std::uint8_t kAccumulator = card_map::engine::kAccumulator;
 constexpr std::uint8_t kArcGenerator = card_map::engine::kArcGenerator;
-constexpr bool kEngines = TRAMMEL_ENGINES != 0;  // others than lines are built in
+constexpr bool kEngines = TRAMMEL_ENGINES != 0;  // engines other than lines are built in
 constexpr unsigned kAxes = 4;
 constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
 constexpr std::uint64_t kComparedSignals = kEngines ? 13 : 15;
@@ -31,7 +31,7 @@ class Bench {
     const std::uint64_t prescale = dice_.word() >> 23 >> (dice_.chance(4) ? dice_.below(40) : dice_.below(4));
     if (!load(load_target::kPrescale, prescale % (kOnePulse + 1), 3)) return;
     if (!wait([this] { return engine_free() && model_.outputs().payload_ready; }, 20'000)) return;
-    // What is asked for now arrives three clocks later.
+    // A halfword requested now arrives three clocks later.
     if (!idle(2) || !load_path(any_path(random_, true))) return;
     if (finish_path()) begin(kAccumulator);
   }
@@ -54,16 +54,16 @@ class Bench {
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + judged_; }
 
  private:
-  // An arc's ticks all given, two clocks ago.
+  // True if all ticks of an arc were given, the last one at least two clocks ago.
   bool engine_free() const { return !on_arc_ || (ticks_left_ == 0 && since_tick_ >= 2); }
 
-  // The ticks of the path are given; an arc's are finished too.
+  // Waits until the ticks of the path are given, and until an arc's are finished.
   bool finish_path() {
     if (!wait([this] { return ticks_left_ == 0; }, 20'000)) return false;
     return !on_arc_ || wait([this] { return since_tick_ >= 2 && model_.outputs().done; }, 2000);
   }
 
-  // A line's swap may stand beside the last tick of the line before it. Swaps are 3 clocks apart.
+  // A line's swap may come with the last tick of the previous line. Swaps are at least 3 clocks apart.
   void begin(std::uint8_t engine) {
     if (!idle(since_swap_ < 3 ? 3 - since_swap_ : 0)) return;
     check_.event("swap", engine);
@@ -114,7 +114,7 @@ class Bench {
     return good && load(load_target::kPlane, y << 8 | x << 4 | rule_bits(path), 1);
   }
 
-  // False when a cut or a reset came in between.
+  // False if a cut or a reset came in between.
   template <class Condition>
   bool wait(Condition condition, unsigned limit) {
     for (unsigned i = 0; i < limit; ++i) {
@@ -139,7 +139,7 @@ class Bench {
     return true;
   }
 
-  // Beside whatever else; one in four is a reset, of one clock; and another one may follow.
+  // A cut with random other inputs; one in four is a reset of one clock instead. Another one may follow.
   void cut() {
     cut_every_ = 20 + dice_.below(dice_.chance(2) ? 300 : 8000);
     do {
@@ -172,7 +172,7 @@ class Bench {
   }
 
   void clock() {
-    // The sequencer knows of the last tick two clocks after it was taken, a clock after it is here.
+    // The sequencer knows of the last tick two clocks after it was taken, which is one clock after it is here.
     in_.engine_taken = on_arc_ && !engine_free();
     apply();
     dut_.clock();
@@ -189,7 +189,7 @@ class Bench {
     using namespace bus::move;
     dut_->move_i = static_cast<SData>(in_place(kSwap, in_.swap) | in_place(kEngine, in_.engine) |
                                       in_place(kTaking, in_.engine_taken) | in_place(bus::move::kAxes, dice_.draw()));
-    // Without its valid bit the bus says nothing.
+    // Without its valid bit the bus has no meaning.
     dut_->load_i = in_.load.valid ? load_wire(in_.load) : dice_.below(1U << bus::load_bus::kValid.offset);
   }
 
@@ -218,7 +218,7 @@ class Bench {
       check_.compare("dir", drive(kDir), 0);
       return;
     }
-    // Both are asked for while an arc runs.
+    // Both outputs are used while an arc runs.
     check_.compare("done_o", dut_->done_o, out.done);
     if (!on_arc_ || !out.done) return;
     check_.compare("missed_end_o", dut_->missed_end_o, out.missed_end);

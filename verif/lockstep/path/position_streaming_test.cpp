@@ -1,5 +1,6 @@
-// Lockstep of position streaming: periods of any length up to 2^40 - 1 ticks, ticks beyond their ends at any pace, with
-// and without a successor, STREAMING set at any clock, commands that come in part; every output in every cycle.
+// Lockstep of position streaming: periods of any length up to 2^40 - 1 ticks, ticks beyond their ends at any pace,
+// with and without a successor, STREAMING set at any clock, commands that arrive in part; every output in every
+// cycle.
 #include "trammel/model/position_streaming.hpp"
 
 #include <Vdut.h>
@@ -39,7 +40,7 @@ class Bench {
       clock();
   }
 
-  // A line without end goes on: of a round 2^bit ticks are left, then one less.
+  // A line continues without end: 2^bit ticks of a round are left, then one less.
   void borrow_from(unsigned bit) {
     reset();
     in_ = {};
@@ -66,7 +67,7 @@ class Bench {
   std::uint64_t modes() const { return modes_; }
 
  private:
-  // A path begins, comes to its end, goes on for a while.
+  // A path begins, reaches its end, and continues for a while.
   void random_path() {
     was_stale_ = stale_;
     if (stale_) {
@@ -90,7 +91,7 @@ class Bench {
     if (in_.cut) running_ = stale_ = false;
   }
 
-  // One or two ticks, and what looks like them where a bit goes unseen.
+  // Few ticks, or counts that equal them if one bit is ignored.
   std::uint64_t random_ticks() {
     const std::uint64_t few = 1 + dice_.below(dice_.chance(2) ? 3 : 40);
     if (dice_.chance(3)) return few;
@@ -139,7 +140,7 @@ class Bench {
     dut_->rest_i = in_.rest;
     dut_->begin_i = in_.begin;
     dut_->count_i = began_with_ != 0 ? began_with_ : dice_.word() & kMax;
-    // A tick that is not beyond the line's end is none of its business.
+    // A tick that is not beyond the line's end must have no effect.
     const bool gone_on = in_.stale_tick || (was_stale_ && dice_.chance(2));
     dut_->take_i = in_.stale_tick || (!gone_on && dice_.chance(2));
     dut_->goes_on_i = in_.goes_on;
@@ -161,12 +162,12 @@ class Bench {
   model::PositionStreaming::Inputs in_;
   Checker check_;
   Dice dice_;
-  unsigned pace_ = 1;             // a tick in so many clocks
-  std::uint64_t began_with_ = 0;  // ticks of the path that began in the clock before; 0: none did
+  unsigned pace_ = 1;             // a tick in one of this many clocks
+  std::uint64_t began_with_ = 0;  // ticks of the path that began in the previous clock; 0: none
   bool running_ = false;
   bool stale_ = false;
   bool was_stale_ = false;
-  std::uint32_t ticks_ahead_ = 0;  // of the model, in the RTL, until the next period ends
+  std::uint32_t ticks_ahead_ = 0;  // the RTL's count minus the model's, until the next period ends
   std::uint64_t missing_ = 0;
   std::uint64_t modes_ = 0;
 };

@@ -1,5 +1,5 @@
-// Lockstep of the probe: every two clocks of its inputs from each of its states, and random ones; every output in every
-// cycle.
+// Lockstep of the probe: every combination of two clocks of inputs from each of its states, and random ones; every
+// output in every cycle.
 #include "trammel/model/probe.hpp"
 
 #include <Vdut.h>
@@ -20,8 +20,8 @@ class Bench {
 
   explicit Bench(std::uint64_t seed) : check_("probe", seed) { reset({}); }
 
-  // One clock of reset, whatever comes in it but what the decoder has, which is reset too. The conditions have no
-  // reset: a command brings them, here the first one.
+  // One clock of reset, with random inputs except those of the decoder, which is reset too. The conditions have no
+  // reset: a command loads them, here the first one.
   void reset(Inputs in) {
     check_.event("reset");
     in.load = {true, model::load_target::kCommand, 0};
@@ -43,7 +43,7 @@ class Bench {
     compare(in);
   }
 
-  // A PROBE for input 0 at level 1, taken with that input at `level`.
+  // Takes a PROBE for input 0 at level 1, with that input at `level`.
   void arm(bool level) {
     Inputs in;
     in.levels = level ? 1 : 0;
@@ -94,14 +94,14 @@ class Bench {
   std::uint64_t touches_ = 0;
 };
 
-// What may be high in a clock, by bits. The raw level differs where `waits` is high, the input is quiet at rest.
+// The inputs of a clock, by bits. The raw level differs if `waits` is high; the input is quiet at rest.
 Bench::Inputs inputs_of(unsigned bits) {
   Bench::Inputs in;
   in.levels = bits & 1;
   in.raw = in.levels ^ (bits >> 1 & 1);
   in.quiet = bits >> 3 & 1;
   in.waits = (bits & 2) != 0;
-  in.ends = (bits & 4) != 0 && !in.waits;  // another command
+  in.ends = (bits & 4) != 0 && !in.waits;  // the decoded command is either a PROBE or a PROBE_END
   in.at_rest = (bits & 8) != 0;
   in.stopping = (bits & 16) != 0;
   in.clear = (bits & 32) != 0;
@@ -109,14 +109,14 @@ Bench::Inputs inputs_of(unsigned bits) {
   return in;
 }
 
-// From each state every two clocks in a row.
+// From each state, every combination of two successive clocks.
 void every_two_clocks() {
   Bench bench(0);
   std::uint64_t cycles = 1;
   for (unsigned state = 0; state < 5; ++state) {
     for (unsigned course = 0; course < 1U << 14; ++course) {
       bench.reset({});
-      if (state != 0) bench.arm(state == 4);                    // armed; tripped already
+      if (state != 0) bench.arm(state == 4);                    // armed; or already tripped
       if (state == 2 || state == 3) bench.clock(inputs_of(1));  // the edge
       if (state == 3) bench.clock(inputs_of(8));                // at rest
       bench.clock(inputs_of(course & 0x7F));

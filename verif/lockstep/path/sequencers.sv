@@ -1,5 +1,5 @@
-// Both sequencers and the tick gate between them, as one top for their lockstep: queue words and feed ticks in, what
-// begins and ends out.
+// Both sequencers and the tick gate between them, as one top for their lockstep: queue words and
+// feed ticks in, the start and end of paths and pieces out.
 `default_nettype none
 
 module sequencers #(
@@ -41,7 +41,7 @@ module sequencers #(
     input wire logic [probe_pkg::WIDTH-1:0] probe_i,
     input wire logic drop_i,
     input wire logic halt_i,
-    // what begins
+    // pieces that begin
     output logic feed_swap_o,
     output logic [feed_load_pkg::WIDTH-1:0] feed_load_o,
     // status

@@ -1,5 +1,5 @@
-// Both sequencers beside their models: programs into the queues, time, engines and axes as the dice or a test have
-// them.
+// Both sequencers beside their models: programs come through the queues; time, engines and axes behave at random or
+// as a test demands.
 #pragma once
 
 #include <Vdut.h>
@@ -29,14 +29,14 @@ class SequencersBench {
     reset();
   }
 
-  // How often what comes from outside comes: one clock in so many.
+  // How often external events come: in one of this many clocks.
   struct Pace {
     unsigned enable = 1;
-    unsigned feed_tick = 1;  // of the enabled clocks
-    unsigned busy = 8;       // engine not ready, not done, its state not free
+    unsigned feed_tick = 1;  // in one of this many enabled clocks
+    unsigned busy = 8;       // engine not ready, not done, or its state in use
     unsigned write = 1;      // a halfword into a queue
     unsigned cut = 2000;
-    unsigned input = 100;   // another level at one input
+    unsigned input = 100;   // the level of one input changes
     unsigned at_rest = 10;  // the ratio is 0
   };
   Pace pace;
@@ -77,7 +77,7 @@ class SequencersBench {
     if (closes) in_.cut = false;
   }
 
-  // Everything from the start again, by other dice.
+  // Starts again with another random sequence.
   void restart(std::uint64_t seed) {
     dice_ = Dice(seed);
     in_.shut = in_.closing = false;
@@ -85,7 +85,7 @@ class SequencersBench {
     reset();
   }
 
-  // Short programs of all kinds, at a tick every other clock.
+  // Short programs of all kinds, with a tick in every other clock.
   void short_programs(unsigned clocks) {
     pace = {1, 2, 3, 1, 0, 20};
     programs_.longest = 8;
@@ -96,7 +96,7 @@ class SequencersBench {
     }
   }
 
-  // At whatever is decided in this clock, a path's wrong end among it.
+  // Interrupts all decisions of this clock, including a path's wrong end.
   void interrupt(bool by_reset) {
     in_.missed_end = true;
     in_.cut = !by_reset;
@@ -107,12 +107,12 @@ class SequencersBench {
     in_.missed_end = in_.cut = false;
   }
 
-  // Now and then a stretch of commands or, at rest, a direct move.
+  // Sometimes adds a stretch of commands or, at rest, a direct move.
   void commands() {
-    // Where ticks may not be taken neither commands nor a START get this far.
+    // While no ticks may be taken, neither commands nor a START reach this block.
     const bool open = stand_for_ == 0;
     if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
-    // The last command's commit shows in the queue two clocks later and in `idle` after two more.
+    // The commit of the last command shows in the queue two clocks later, and in `idle` after two more.
     rest_for_ = at_rest() ? rest_for_ + 1 : 0;
     if (open && rest_for_ > 8 && dice_.chance(100)) direct_step_ = 1;
     direct();
@@ -155,7 +155,7 @@ class SequencersBench {
     feed_.add(stretch.feed);
   }
 
-  // Position streaming: a period of so many ticks, the next one so many clocks later, two more, and an END or a cut.
+  // Position streaming: a period of `ticks` ticks, the next one after `clocks` clocks, two more, and an END or a cut.
   void stream(unsigned ticks, unsigned stale_periods, unsigned clocks) {
     const auto period = [&] { return stored_command(card_map::Opcode::Line, 7, ticks, {}, {kOnePulse, 1, -1}); };
     const auto run = [this](unsigned n) {
@@ -181,7 +181,7 @@ class SequencersBench {
     run(20);
   }
 
-  // A program with a PROBE for a high level of input 0, which rises after so many clocks.
+  // A program with a PROBE for a high level of input 0, which rises after `clocks` clocks.
   void probed(const Stretch& program, unsigned clocks) {
     pace = {1, 1 + dice_.below(2), 3, 1 + dice_.below(2), 1'000'000, 1'000'000, 1 + dice_.below(4)};
     levels_ = 0;
@@ -191,8 +191,7 @@ class SequencersBench {
     for (unsigned i = 0; i < 400; ++i) clock();
   }
 
-  // A WAIT_INPUT without a time-out whose count has come round to its end: it goes on waiting for its input, which is
-  // set.
+  // A WAIT_INPUT without a time-out whose count has wrapped to its end: it must still wait for its input.
   void wait_beyond_the_count() {
     const Halfwords wait = stored_command(card_map::Opcode::WaitInput, 0, 0, {{"condition", 0x20}});
     pace = {1, 1, 1'000'000, 1, 1'000'000, 1'000'000, 1};
@@ -208,7 +207,7 @@ class SequencersBench {
     for (unsigned i = 0; i < 40; ++i) clock();
   }
 
-  // STREAMING, and halfwords on their way in, at any clock: the mode changes at rest alone.
+  // STREAMING, and arriving halfwords, at any clock: the mode changes only at rest.
   void random_mode() {
     const bool on = dice_.chance(2);
     in_.setting = {dice_.chance(mode_every_), dice_.chance(8) ? card_map::reg::kHold : card_map::reg::kStreaming,
@@ -233,7 +232,7 @@ class SequencersBench {
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
-  // One clock of reset, whatever comes in it.
+  // One clock of reset, with random other inputs.
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -255,7 +254,7 @@ class SequencersBench {
     compare();
   }
 
-  // The loader: the length's halfwords, then, 8 clocks later, go.
+  // The loader: the halfwords of the length, and 8 clocks later go.
   void direct() {
     if (direct_step_ == 0) return;
     ++direct_step_;
@@ -275,7 +274,7 @@ class SequencersBench {
     }
   }
 
-  // Ticks come three clocks after their enable and not after a clear.
+  // Ticks come three clocks after their enable, and not after a clear.
   void surroundings() {
     in_.geometry_empty = geometry_.outputs().empty;
     in_.geometry_word = geometry_.outputs().word;
@@ -286,31 +285,31 @@ class SequencersBench {
     feed_ticks_ >>= 1;
     if (model_.outputs().feed_enable && dice_.chance(pace.feed_tick)) feed_ticks_ |= 4;
     if (model_.outputs().feed_clear) feed_ticks_ = 0;
-    // A direct move has no engine to wait for.
+    // A direct move does not wait for an engine.
     in_.engine_ready = model_.outputs().direct || !dice_.chance(pace.busy);
-    // Taken from a clock after an arc's tick on, for at least as long as that is on its way.
+    // In use from the clock after an arc's tick, at least as long as the tick is on its way.
     if (model_.outputs().engine != card_map::engine::kLines && model_.outputs().tick)
       payload_taken_for_ = 4 + dice_.below(pace.busy);
     else if (payload_taken_for_ != 0)
       --payload_taken_for_;
     // A silence ends when the engine has been done for a while.
     in_.engine_done = !dice_.chance(model_.outputs().silent ? 40 : pace.busy);
-    // The arc generator has the axes' shadows from its start until it has been over for a while.
+    // The arc generator uses the axes' shadows from its start until it has been over for a while.
     if (model_.outputs().swap && model_.outputs().engine == card_map::engine::kArcGenerator)
       in_.shadows_free = false;
     else if (cut_before_ || (!model_.engine_taken() && dice_.chance(pace.busy)))
       in_.shadows_free = true;
-    // A path on lines begins when the engine before it has finished; a cut finishes it.
+    // A path on lines begins when the previous engine has finished; a cut finishes it.
     if (cut_before_ || (model_.outputs().swap && model_.outputs().engine == card_map::engine::kLines))
       payload_taken_for_ = 0;
     in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
     in_.axes_live = dice_.chance(2);
     probe();
-    // A piece that is short of ticks behind it; mostly none is.
+    // A piece that lacks queued ticks; mostly there is none.
     if (dice_.chance(in_.wait ? 30 : 300)) in_.wait = !in_.wait;
   }
 
-  // What the probe does with inputs that change now and then.
+  // The probe, with inputs that change from time to time.
   void probe() {
     if (dice_.chance(pace.input)) levels_ ^= 1U << dice_.below(32);
     at_rest_ = dice_.chance(pace.at_rest);
@@ -384,7 +383,7 @@ class SequencersBench {
     const auto command = [this](const bus::Field& field) { return get(dut_->commands_o, field); };
     check_.compare("mismatch", path(bus::path::kMismatch), out.mismatch);
     check_.compare("incomplete", path(bus::path::kIncomplete), out.incomplete);
-    const bool dropping = in_.drop;  // combinational: of the clock that is over
+    const bool dropping = in_.drop;  // combinational: the value of the last clock
     check_.compare("take mark", command(bus::commands::kTakeMark), model_.takes_mark(dropping));
     check_.compare("take PWM", command(bus::commands::kTakePwm), model_.takes_pwm(dropping));
     check_.compare("take output", command(bus::commands::kTakeOutput), model_.takes_output(dropping));
@@ -412,7 +411,7 @@ class SequencersBench {
     check_.compare("unfinished", path(bus::path::kUnfinished), model_.unfinished());
     still_ = out.tick || out.swap ? 0 : still_ + 1;
     if (still_ > 3) more("left", model_.unfinished() ? path(bus::path::kLeft) : 0, model_.ticks_to_come());
-    // What stands beside an event, where there is one.
+    // Values that are valid with an event.
     const std::uint64_t beside = out.swap ? std::uint64_t{out.engine} << 8 | out.active : 0;
     check_.compare("move_o, axes and engine", out.swap ? move(bus::move::kEngine) << 8 | move(bus::move::kAxes) : 0,
                    beside);
@@ -437,12 +436,12 @@ class SequencersBench {
   QueueWriter feed_;
   SnapshotWord chain_[2];
   unsigned still_ = 0;       // clocks without a tick or a swap
-  unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
+  unsigned feed_ticks_ = 0;  // ticks on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
-  bool cut_before_ = false;   // in the last clock
-  unsigned stand_for_ = 0;    // clocks of a fault
-  unsigned direct_step_ = 0;  // of a direct move; 0: none
-  unsigned rest_for_ = 0;     // clocks
+  bool cut_before_ = false;   // a cut came in the last clock
+  unsigned stand_for_ = 0;    // clocks for which a fault lasts
+  unsigned direct_step_ = 0;  // step of a direct move; 0: none
+  unsigned rest_for_ = 0;     // clocks at rest
   std::uint64_t length_ = 0;
   std::uint64_t ends_ = 0;
   std::uint64_t missing_ = 0;

@@ -5,7 +5,7 @@
 
 std::uint32_t fast_count(const Vdut& dut) { return dut.rootp->sequencers__DOT__geometry__DOT__ticks__DOT__low_q; }
 
-// The RTL keeps them inverted.
+// The RTL stores them inverted.
 void clear_slow_count(Vdut& dut) {
   dut.rootp->sequencers__DOT__geometry__DOT__ticks__DOT__mid_q = 0xFFFF;
   dut.rootp->sequencers__DOT__geometry__DOT__ticks__DOT__top_q = (1U << 20) - 1;

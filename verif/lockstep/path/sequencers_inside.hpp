@@ -1,12 +1,12 @@
-// What the sequencers' test looks at and changes inside the RTL: the path's tick counter, which also counts at
-// barriers.
+// Values that the sequencers' test reads and changes inside the RTL: the path's tick counter, which also counts
+// during barriers.
 #pragma once
 
 #include <cstdint>
 
 class Vdut;
 
-// Its four fast bits.
+// The four fast bits of the counter.
 std::uint32_t fast_count(const Vdut& dut);
-// The other 36 bits become 0.
+// Clears the other 36 bits.
 void clear_slow_count(Vdut& dut);

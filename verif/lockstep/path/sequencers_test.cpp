@@ -1,6 +1,5 @@
-// Lockstep of both sequencers with all that belongs to them (fetches, decoders, counters, barrier, tick gate): random
-// programs while time, engines and axes do as they like, cuts and resets at any clock, direct moves; every output in
-// every cycle.
+// Lockstep of both sequencers with all their parts (fetches, decoders, counters, barrier, tick gate): random programs
+// with random time, engines and axes, cuts and resets at any clock, direct moves; every output in every cycle.
 #include <gtest/gtest.h>
 
 #include "sequencers_bench.hpp"
@@ -10,7 +9,8 @@ namespace {
 
 using Bench = SequencersBench;
 
-// Paths, pieces and dwells at the boundaries of their counters' words, at a tick a clock; each alone to its end.
+// Paths, pieces and dwells at the boundaries of their counters' words, with a tick in every clock; each alone to its
+// end.
 void boundaries() {
   Bench bench(1);
   bench.pace = {1, 1, 1'000'000, 1, 1'000'000};
@@ -67,7 +67,7 @@ void random_programs() {
   EXPECT_GT(bench.late(), length / 50'000);
 }
 
-// The next period comes in every clock around the end of the one before, and long after.
+// The next period comes in every clock around the end of the previous one, and long after it.
 void late_periods() {
   Bench bench(3);
   for (const unsigned ticks : {1U, 2U, 3U, 17U, 40U}) {
@@ -81,7 +81,7 @@ void late_periods() {
   EXPECT_GT(bench.late(), 500U);
 }
 
-// A cut or a reset at each clock of two runs, and what comes next.
+// A cut or a reset at each clock of two runs, and the clocks after it.
 void cuts_at_every_clock() {
   Bench bench(1);
   for (const bool by_reset : {false, true}) {
@@ -96,7 +96,8 @@ void cuts_at_every_clock() {
   EXPECT_GT(bench.swaps(), 2000U);
 }
 
-// Paths and all barriers between PROBE and PROBE_END; or nothing, so that the END before them is the last command.
+// Paths and all barriers between PROBE and PROBE_END; with `empty`: nothing, so that the END before them is the last
+// command.
 Programs::Stretch probed_program(bool empty) {
   const auto barrier = [](card_map::Opcode opcode, std::uint64_t count) { return stored_command(opcode, 0, count); };
   const auto line = [](std::uint64_t ticks) {
@@ -119,7 +120,7 @@ Programs::Stretch probed_program(bool empty) {
   return program;
 }
 
-// A probe's edge at each clock of a program, whose commands stand ahead of it in either queue by chance.
+// A probe's edge at each clock of a program; by chance, its commands are already decoded or still in either queue.
 void edges_at_every_clock() {
   Bench bench(1);
   const unsigned clocks[] = {400, 120};
@@ -142,7 +143,7 @@ void wait_without_time_out() {
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
 }
 
-// What finds most comes first.
+// The tests that find most bugs come first.
 TEST(Sequencers, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
 TEST(Sequencers, EdgesAtEveryClock) { EXPECT_EQ(judge(edges_at_every_clock), ""); }
 TEST(Sequencers, LatePeriods) { EXPECT_EQ(judge(late_periods), ""); }

@@ -1,5 +1,5 @@
-// Lockstep of the watch over the writing session's link: random accesses of several ports and sessions, answers good
-// and refused, settings, and units of time; every output in every cycle.
+// Lockstep of the watch over the writing session's link: random accesses of several ports and sessions, accepted and
+// refused answers, settings, and units of time; every output in every cycle.
 #include "trammel/model/link_watch.hpp"
 
 #include <Vdut.h>

@@ -1,5 +1,6 @@
-// The register file beside its golden model: random accesses of all ports, a random command checker and loader, stops,
-// snapshots through a chain of latched words, and resets; every port in every cycle, data where it means something.
+// The register file beside its golden model: random accesses of all ports, a random command checker and loader,
+// stops, snapshots through a chain of latched words, and resets; every port in every cycle, data whenever it is
+// valid.
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ constexpr bool kCaptures = card_map::has_engine(TRAMMEL_ENGINES, card_map::engin
 constexpr bool kCaptureFifo = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kCaptureFifo);
 constexpr std::uint64_t kFilled = kCaptures        ? 700
                                   : kMachineInputs ? 500
-                                                   : 300;  // clocks after reset, more than the filling takes
-// Words that the direct loader reads: from its first register up to START.
+                                                   : 300;  // clocks after reset, longer than the filling
+// The words that the direct loader reads: from its first register to START.
 constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(kAxes - 1) / 4;
 constexpr std::uint32_t kDirectWords = card_map::reg::kStart / 4 - kFirstDirect;
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
@@ -65,7 +66,7 @@ class Bench {
     in_.ratio = 0x10000;
   }
 
-  // One clock of reset, whatever comes in it; what was asked for is forgotten.
+  // One clock of reset, with random other inputs; pending requests are dropped.
   void reset() {
     in_.incomplete = false;
     in_.passed = 0;
@@ -88,7 +89,7 @@ class Bench {
 
   void clock() {
     drive();
-    rtl_->eval();  // a unit that takes its request back is not told in this clock
+    rtl_->eval();  // a unit that withdraws its request is not told in this clock
     more("captured", get(rtl_->capture_answer_o, trammel::bus::capture_answer::kCaptured),
          model_.captured(in_.captures));
     const std::uint64_t snapshot = rtl_->snapshot_o;
@@ -99,7 +100,7 @@ class Bench {
     compare();
   }
 
-  // The first clock of an access with everything else at rest.
+  // The first clock of an access with all other inputs at rest.
   void ask(bool write, std::uint32_t address, std::uint32_t data) {
     in_.request = true;
     in_.write = write;
@@ -111,7 +112,7 @@ class Bench {
     in_.request = false;
   }
 
-  // The whole of it; the data read.
+  // A whole access; returns the data read.
   std::uint32_t access(bool write, std::uint32_t address, std::uint32_t data) {
     ask(write, address, data);
     while (!model_.outputs().ack) clock();
@@ -121,7 +122,7 @@ class Bench {
     return answer;
   }
 
-  // Unit 0 asks until it is told; where `mark` says so, a MARK comes in its first clock.
+  // Unit 0 requests until it is told; with `mark`, a MARK comes in the first clock of the request.
   void capture(bool mark) {
     in_.captures = 1;
     in_.mark = mark;
@@ -138,8 +139,8 @@ class Bench {
     random_checker();
     random_loader();
     random_access();
-    // Nothing moves before the registers are filled, so nothing stops.
-    // A stop is as likely beside what a write asks for as anywhere else.
+    // Nothing moves before the registers are filled, so no stop comes. A stop is more likely in the clock of an
+    // answer, to meet the events of a write.
     in_.stop = model_.time() > kFilled && chance(model_.outputs().ack ? 20 : 300);
     if (in_.stop) checker_.event("stop");
     if (chance(1000)) marks_every_ = chance(3) ? 5 + draw() % 20 : 300;
@@ -147,7 +148,7 @@ class Bench {
     if (in_.rest) checker_.event("rest");
     in_.mark = kPathCommands && model_.time() > kFilled && chance(marks_every_);
     if (in_.mark) checker_.event("mark");
-    // Not while the stop's snapshot is under way: the probe is off then.
+    // Not during the stop's snapshot: the probe is off then.
     stopped_for_ = in_.stop ? 0 : stopped_for_ + 1;
     in_.probe = kPathCommands && model_.time() > kFilled && stopped_for_ > kAxes + 11 && chance(in_.rest ? 2 : 300);
     if (in_.probe) checker_.event("probe");
@@ -159,7 +160,7 @@ class Bench {
     }
   }
 
-  // Sets both times to `clocks`.
+  // Sets the time of both to `clocks`.
   void skip_to(std::uint64_t clocks) {
     const std::uint64_t more = clocks - model_.time();
     model_.state().time += more;
@@ -175,7 +176,7 @@ class Bench {
   std::uint32_t draw() { return static_cast<std::uint32_t>(random_()); }
   bool chance(std::uint32_t one_in) { return draw() % one_in == 0; }
 
-  // Most where something is under way that a reset must stop, and in the clocks after another one.
+  // More frequent while something is under way that a reset must stop, and in the clocks after another reset.
   std::uint32_t reset_every() const {
     const bool acts = in_.write && (in_.address == reg::kStream || in_.address == reg::kStart ||
                                     in_.address == reg::kFault || in_.address == reg::kControl);
@@ -185,7 +186,7 @@ class Bench {
 
   std::uint32_t latched_value(std::size_t place) {
     if (place >= kBeforePositions) return in_.position[place - kBeforePositions];
-    // REST has the ticks that are left in the place of the first two.
+    // REST has the ticks left in the place of the first two words.
     const bool rest = get(rtl_->snapshot_o, trammel::bus::snapshot::kRest) != 0;
     const std::uint32_t values[] = {rest ? static_cast<std::uint32_t>(in_.ticks_left >> 32) : in_.ratio,
                                     rest ? static_cast<std::uint32_t>(in_.ticks_left) : in_.rate, in_.feed_begun,
@@ -193,7 +194,8 @@ class Bench {
     return values[place];
   }
 
-  // A unit asks until it is told, or takes it back. What it hands on stands in its area until that is taken.
+  // A unit requests until it is told, or withdraws the request. A capture that it hands on stays in its area until
+  // the queue has taken it.
   void random_captures() {
     if (!kCaptures || model_.time() <= kFilled) return;
     in_.passed = static_cast<std::uint8_t>(in_.passed & ~model_.queued(in_.passed));
@@ -263,7 +265,7 @@ class Bench {
     for (std::uint32_t n = 0; n < kAxes; ++n) in_.position[n] = draw();
   }
 
-  // A word is answered some clocks after its write, with ready; a flush may refuse what it breaks off.
+  // The checker answers a word some clocks after its write, with ready; a flush may refuse an incomplete command.
   void random_checker() {
     in_.checker_refuse = flushed_ && chance(2);
     flushed_ = model_.outputs().flush;
@@ -278,7 +280,7 @@ class Bench {
 
   void random_loader() {
     if (model_.outputs().start) start_wait_ = 1 + draw() % 40;
-    // The direct loader reads its own registers alone, never words that a snapshot may be writing.
+    // The direct loader reads only its own registers, never words that a snapshot may be writing.
     in_.loader_address = static_cast<std::uint16_t>(kFirstDirect + draw() % kDirectWords);
     in_.start_done = start_wait_ == 1;
     in_.start_error = chance(2);
@@ -298,7 +300,7 @@ class Bench {
     in_.request = true;
     in_.write = chance(2);
     in_.partial = chance(20);
-    // Whoever is refused often looks why.
+    // A host that was refused often reads the reason.
     const bool looks = refused_ && chance(3);
     if (!looks) in_.port = static_cast<std::uint8_t>(draw() % kPorts);
     in_.write = in_.write && !looks;
@@ -306,15 +308,15 @@ class Bench {
     in_.data = random_data(in_.address);
     in_.of_session = !chance(10);
     in_.new_session = in_.of_session && chance(30);
-    // Refusals are cleared often, or there would be no first one (a write of 0 clears nothing); snapshots are asked for
-    // often.
+    // Refusals are often cleared, so that first ones occur (a write of 0 clears nothing); snapshots are often
+    // requested.
     if (!looks && chance(5)) write_register(reg::kRefusal, chance(3) ? 0 : 1U << draw() % 28);
     if (!looks && chance(20)) write_register(reg::kControl, card_map::field::kControlSnapshot);
     if (!looks && kCaptureFifo && chance(drops_every_)) write_register(reg::kCaptureNext, oldest());
     checker_.event(in_.write ? "write" : "read", in_.address);
   }
 
-  // The number that drops the oldest capture of the queue, mostly; the queue is full at times, and empty at others.
+  // Mostly the number that drops the oldest capture. The queue is sometimes full and sometimes empty.
   std::uint32_t oldest() {
     if (chance(50)) drops_every_ = chance(2) ? 10 : 100;
     const std::uint32_t queue = model_.state().queue.word();
@@ -339,7 +341,7 @@ class Bench {
     return card_map::slot_address(entry, draw() % entry.count) + stray;
   }
 
-  // Mostly a value that the register takes, its limits among them.
+  // Mostly a value that the register accepts, including its limits.
   std::uint32_t random_data(std::uint32_t address) {
     const card_map::Slot slot = card_map::find_register(address & ~3u);
     if (slot.entry == nullptr || chance(8)) return draw();
@@ -464,16 +466,16 @@ class Bench {
   std::array<SnapshotWord, kBeforePositions + kAxes> chain_;
   std::uint64_t more_ = 0;
   bool flushed_ = false;
-  bool streamed_ = false;        // since reset
-  bool refused_ = false;         // the last access
-  bool access_refused_ = false;  // that of access()
+  bool streamed_ = false;        // a stream word since reset
+  bool refused_ = false;         // the last access was refused
+  bool access_refused_ = false;  // the last access() was refused
   std::uint32_t checker_wait_ = 0;
   std::uint32_t start_wait_ = 0;
   std::uint32_t marks_every_ = 300;
   std::uint32_t captures_every_ = 300;
-  std::uint32_t drops_every_ = 10;  // accesses
+  std::uint32_t drops_every_ = 10;  // one in this many accesses drops a capture
   std::uint8_t told_ = 0;           // the units that were told in the last clock
-  std::uint8_t held_ = 0;           // of these, the units that will hand on a capture
+  std::uint8_t held_ = 0;           // those of them that will hand on a capture
   std::uint32_t stopped_for_ = 0;   // clocks since the last stop
   bool outstanding_ = false;
 };

@@ -1,9 +1,9 @@
-// What the register file's test changes inside the RTL.
+// Changes that the register file's test makes inside the RTL.
 #pragma once
 
 #include <cstdint>
 
 class Vdut;
 
-// Lets `clocks` pass for the time that snapshots take.
+// Adds `clocks` to the time of snapshots.
 void advance_time(Vdut& dut, std::uint64_t clocks);

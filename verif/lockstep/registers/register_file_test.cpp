@@ -1,4 +1,4 @@
-// Lockstep of the register file: random traffic, and what seldom comes about by chance.
+// Lockstep of the register file: random traffic, and cases that are rare by chance.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -8,7 +8,7 @@
 namespace trammel::lockstep {
 namespace {
 
-// A snapshot that is asked for so many clocks before the time's lower `bits` bits carry.
+// A snapshot requested `before` clocks before the lower `bits` bits of the time carry.
 void snapshot_before_a_carry(Bench& bench, std::uint32_t bits, std::uint32_t before) {
   bench.reset();
   for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();
@@ -18,14 +18,14 @@ void snapshot_before_a_carry(Bench& bench, std::uint32_t bits, std::uint32_t bef
   bench.access(false, reg::kSnapTimeHi, 0);
 }
 
-// In every clock around the carry into the time's high word, of which the card writes the halves in turn; then around
-// each carry within the high word.
+// In every clock around the carry into the time's high word, whose halves the card writes in turn; then around each
+// carry within the high word.
 void snapshots_around_carries(Bench& bench) {
   for (std::uint32_t before = 0; before < 16; ++before) snapshot_before_a_carry(bench, 32, before);
   for (std::uint32_t bits = 33; bits < 64; ++bits) snapshot_before_a_carry(bench, bits, bits % 4);
 }
 
-// A reset in each clock of a write: what it asked for never comes out, be it a setting, an event or a refusal.
+// A reset in each clock of a write: its effect never appears, whether a setting, an event or a refusal.
 void resets_in_writes(Bench& bench) {
   constexpr std::pair<std::uint32_t, std::uint32_t> kWritten[] = {
       {reg::kIrqEnable, 1}, {reg::kControl, 1}, {reg::kControl, card_map::field::kControlProbeClear},
@@ -64,8 +64,8 @@ TEST(RegisterFile, ReadsEveryAddressAfterReset) {
             }));
 }
 
-// Each word that can be written gets a number of its own, and keeps it while all others are written, but not over a
-// reset. Writes of the stream and of START wait for others, of whom there are none here.
+// Each writable word receives a number of its own and keeps it while all others are written, but not over a reset.
+// Writes of the stream and of START are left out, because they wait for blocks that are missing here.
 TEST(RegisterFile, EveryWordIsItsOwn) {
   EXPECT_EQ("", judge([] {
               Bench bench(1);
@@ -82,7 +82,7 @@ TEST(RegisterFile, EveryWordIsItsOwn) {
             }));
 }
 
-// An absent axis has no register, whatever the flip-flops began with.
+// An absent axis has no register, for every initial state of the flip-flops.
 void absent_axis() {
   for (int state = 1; state <= 8; ++state) {
     Bench bench(1, state);
@@ -91,7 +91,7 @@ void absent_axis() {
   }
 }
 
-// Which of both goes first does not depend on the snapshot before the reset.
+// The order of both does not depend on the snapshot before the reset.
 void captures_beside_marks() {
   if (!kCaptures) return;
   Bench bench(1);
@@ -106,7 +106,7 @@ void captures_beside_marks() {
 TEST(RegisterFile, AbsentAxis) { EXPECT_EQ("", judge(absent_axis)); }
 TEST(RegisterFile, CapturesBesideMarks) { EXPECT_EQ("", judge(captures_beside_marks)); }
 
-// A snapshot and its time, read twice in a row: the difference is the clocks between the two snapshots.
+// A snapshot and its time, twice in a row: the difference is the number of clocks between the two snapshots.
 void snapshot_time_counts_clocks() {
   Bench bench(1);
   bench.access(true, reg::kControl, card_map::field::kControlSnapshot);
@@ -120,7 +120,7 @@ void snapshot_time_counts_clocks() {
   EXPECT_LT(second - first, between + 32);
 }
 
-// LINK_TIMEOUT passes in units of 2^16 clocks, of which those around their ends are run.
+// LINK_TIMEOUT passes in units of 2^16 clocks; only the clocks around their ends are run.
 void link_timeout_counts_units() {
   Bench bench(1);
   for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();

@@ -1,4 +1,4 @@
-// Lockstep of the buttons: every course of their levels over eight clocks.
+// Lockstep of the buttons: every sequence of their levels over eight clocks.
 #include "trammel/model/button_hold.hpp"
 
 #include <Vdut.h>

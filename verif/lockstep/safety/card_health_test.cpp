@@ -1,5 +1,4 @@
-// Lockstep of what tells that the card is healthy: faults, the watchdog and settings at random; both outputs in every
-// cycle.
+// Lockstep of the health outputs: random faults, watchdog and settings; both outputs in every cycle.
 #include "trammel/model/card_health.hpp"
 
 #include <Vdut.h>

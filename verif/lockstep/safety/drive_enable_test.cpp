@@ -1,5 +1,6 @@
-// Lockstep of the sequence of enable and brake: every start, stop, order, fault and emergency stop at each clock of the
-// sequence, and random ones; every output in every cycle. What must never be is judged beside it.
+// Lockstep of the sequence of enable and brake: every start, stop, order, fault and emergency stop at each clock of
+// the sequence, and random ones; every output in every cycle. Forbidden states are checked independently of the
+// model.
 #include "trammel/model/drive_enable.hpp"
 
 #include <Vdut.h>
@@ -20,7 +21,7 @@ constexpr unsigned kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 constexpr unsigned kDelayBits = 2;  // as built
 constexpr unsigned kIdleBits = 4;
-constexpr std::uint64_t kComparedSignals = 4;  // and one more in each clock without a reset
+constexpr std::uint64_t kComparedSignals = 4;  // plus one more in each clock without a reset
 
 class Bench {
  public:
@@ -46,7 +47,7 @@ class Bench {
     const bool was = model_.enabled();
     const bool wanted = in.moves || model_.state().on;
     apply(in);
-    dut_->eval();  // what is combinational, before the edge
+    dut_->eval();  // combinational outputs, before the edge
     check_.compare("disabled_o", dut_->disabled_o, model_.disables(in));
     dut_.clock();
     model_.clock(in);
@@ -104,10 +105,10 @@ void settings(Bench& bench, std::uint32_t idle) {
   bench.set(reg::kEnableIdle, idle);
   bench.set(reg::kDisableCauses, card_map::field::kFaultWatchdog);
   bench.set(reg::kEnableAxes, kAllAxes & 0b101);
-  bench.clock({});  // at rest it comes into force
+  bench.clock({});  // at rest it takes effect
 }
 
-// What happens in one clock of a course, beside the motion.
+// The event of one clock of a course, in addition to the motion.
 Bench::Inputs happening(unsigned kind) {
   Bench::Inputs in;
   if (kind == 1) in.emergency = true;
@@ -120,7 +121,7 @@ Bench::Inputs happening(unsigned kind) {
   return in;
 }
 
-// Motion of 12 clocks that begins at once; a happening, of one clock or to the end, at each clock of what follows.
+// Motion of 12 clocks that begins at once; an event of one clock, or to the end, at each clock of the course.
 void every_moment() {
   Bench bench(0);
   constexpr unsigned kClocks = 90;

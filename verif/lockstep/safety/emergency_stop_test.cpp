@@ -1,5 +1,6 @@
-// Lockstep of the emergency stop's pin: presses, releases and clears in every order of eight clocks, random ones, both
-// levels; every output in every cycle. A press counts with the clock here; emergency_pin_test.cpp presses between two.
+// Lockstep of the emergency stop's pin: presses, releases and clears in every order of eight clocks, random ones,
+// both levels; every output in every cycle. Here a press acts with the clock; card_pins_test.cpp presses between two
+// edges.
 #include "trammel/model/emergency_stop.hpp"
 
 #include <Vdut.h>
@@ -17,7 +18,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : check_("emergency_stop", seed) {}
 
-  // A clock of reset, with this level at the pin.
+  // One clock of reset, with this level at the pin.
   void reset(bool level, bool pin) {
     check_.event("reset, level that stops", level);
     level_ = level;
@@ -30,7 +31,7 @@ class Bench {
     compare(false);
   }
 
-  // The pin is pressed, and a clear comes.
+  // One clock; `pressed`: the pin is at its stop level, `clear`: a clear comes.
   void clock(bool pressed, bool clear) {
     if (pressed) check_.event("pressed");
     if (clear) check_.event("clear");

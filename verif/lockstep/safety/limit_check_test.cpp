@@ -1,4 +1,4 @@
-// Lockstep of the limit check: every course of steps and levels of one axis over a few clocks under each rule, and
+// Lockstep of the limit check: every sequence of steps and levels of one axis over a few clocks with each rule, and
 // random ones of all axes; every output in every cycle.
 #include "trammel/model/limit_check.hpp"
 
@@ -83,7 +83,8 @@ class Bench {
   std::uint64_t others_ = 0;
 };
 
-// The last axis in every course of four clocks: no step, one each way, with each pair of levels; and under each rule.
+// The last axis in every sequence of four clocks: no step or one in either direction, with each pair of levels; with
+// each rule.
 void every_course() {
   Bench bench(0);
   constexpr unsigned kAxis = kAxes - 1;
@@ -162,7 +163,7 @@ void random_courses() {
   EXPECT_GT(bench.others(), length / 1'000);
 }
 
-// Nothing of a reset's clock comes out behind it.
+// Inputs in the clock of a reset have no effect after it.
 void reset_beside_a_cause() {
   Bench bench(0);
   bench.set(reg::kStopCauses, field::kStopCausesProbe | field::kStopCausesToolSetter);

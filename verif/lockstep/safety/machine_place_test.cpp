@@ -1,4 +1,4 @@
-// Lockstep of the machine's place: every course of one axis over a few clocks, and random ones of all axes; the
+// Lockstep of the machine's place: every sequence of one axis over a few clocks, and random ones of all axes; the
 // register in every cycle.
 #include "trammel/model/machine_place.hpp"
 
@@ -81,8 +81,9 @@ class Bench {
 
 std::uint32_t place_of(std::uint32_t axes, std::uint32_t bits) { return axes << field::kSetPlaceAxesShift | bits; }
 
-// The last axis, valid and homed, kept and not, in every course of three clocks: a step, a piece, rest, a cut, a fault
-// of the drive, a write of both bits or of neither. A fourth, empty one shows what the third takes.
+// The last axis, valid and homed, kept and not kept, in every sequence of three clocks: a step, a piece, rest, a cut,
+// a fault of the drive, a write of both bits or of neither. A fourth clock without events shows the effect of the
+// third.
 void every_course() {
   Bench bench(0);
   constexpr std::uint8_t kBit = 1U << (kAxes - 1);
@@ -154,7 +155,7 @@ void random_courses() {
   EXPECT_GT(bench.kept(), length / 400);
 }
 
-// Nothing of a reset's clock counts behind it.
+// Inputs in the clock of a reset have no effect after it.
 void reset_beside_an_event() {
   Bench bench(0);
   Bench::Inputs in;

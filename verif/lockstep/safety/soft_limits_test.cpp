@@ -1,6 +1,6 @@
-// Lockstep of the soft limits: axes that go to and fro around their ends, with pulses as close as a shaper makes them,
-// ends that are moved meanwhile, positions across the carry of 2^31 and of 2^32, and what a reset must end; every
-// output in every cycle.
+// Lockstep of the soft limits: axes that move to and fro around their ends, with pulses as close as a shaper makes
+// them, ends that change at the same time, positions across the carries of 2^31 and 2^32, and the state that a reset
+// must clear; every output in every cycle.
 #include "trammel/model/soft_limits.hpp"
 
 #include <Vdut.h>
@@ -17,8 +17,8 @@ namespace reg = card_map::reg;
 constexpr unsigned kAxes = TRAMMEL_AXES;
 constexpr std::uint64_t kComparedSignals = 2;
 constexpr unsigned kClearing = 16;  // clocks after reset
-constexpr unsigned kSameWay = 6;    // clocks between two pulses at the least
-constexpr unsigned kTurned = 13;
+constexpr unsigned kSameWay = 6;    // minimum clocks between two pulses in the same direction
+constexpr unsigned kTurned = 13;    // minimum clocks between two pulses at a reversal
 
 class Bench {
  public:
@@ -35,7 +35,7 @@ class Bench {
     dut_->rst_i = 0;
     model_ = model::SoftLimits(kAxes);
     compare();
-    // Data stand on the bus while the ends are cleared.
+    // The bus has data without `set` while the ends are cleared.
     Inputs idle;
     idle.setting = {false, reg::soft_minus(0), 0x12345678};
     for (unsigned i = 0; i < kClearing; ++i) clock(idle);
@@ -88,13 +88,13 @@ class Bench {
   std::uint64_t causes_ = 0;
 };
 
-// An axis's pulses, as its shaper would make them.
+// The pulses of an axis, as its shaper would make them.
 struct Mover {
   std::uint32_t position = 0;
   bool back = false;
   unsigned since = kTurned;
 
-  // A pulse, or none.
+  // Makes a pulse or none.
   bool pulse(Dice& dice, bool quick) {
     ++since;
     if (since < kSameWay || !dice.chance(quick ? 2 : 30)) return false;
@@ -119,7 +119,7 @@ model::Setting random_setting(Dice& dice, const std::array<Mover, kAxes>& axes) 
       return {true, reg::soft_plus(axis), dice.chance(20) ? here + 0x7FFFFFFF : here + dice.below(5)};
     case 3:
       return {true, dice.chance(2) ? reg::kLimitOverride : reg::mode(axis), dice.draw()};
-    case 4:  // below the axes'
+    case 4:  // addresses below those of the axes
       return {true, 4 * dice.below(reg::mode(0) / 4), dice.draw()};
     default:
       return {true, reg::machine_zero(axis), dice.draw()};
@@ -163,8 +163,8 @@ void random_courses() {
   EXPECT_GT(bench.causes(), length / 100);
 }
 
-// A reset in the clock of a pulse beyond the end, at each clock of the round: nothing comes of it, and the first pulse
-// behind it, in the other direction, is judged and named as if there had been none before.
+// A reset in the clock of a pulse beyond the end, at each clock of the round: the pulse has no effect. The first
+// pulse after it, in the other direction, is judged and reported as if there had been none before.
 void resets_beside_pulses() {
   constexpr std::uint8_t kAll = (1U << kAxes) - 1;
   constexpr unsigned kRound = 8;

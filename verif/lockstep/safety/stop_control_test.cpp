@@ -22,7 +22,7 @@ class Bench {
 
   explicit Bench(std::uint64_t seed) : check_("stop_control", seed) { reset({}); }
 
-  // One clock of reset, whatever comes in it.
+  // One clock of reset, with these other inputs.
   void reset(const Inputs& in) {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -118,7 +118,7 @@ class Bench {
   std::uint64_t rests_ = 0;
 };
 
-// What may happen in one clock of the directed scenario. Over a screen: a case for each.
+// The events of one clock of the directed scenario. Over a screen: one case per event.
 Bench::Inputs happening(unsigned kind) {
   Bench::Inputs in;
   switch (kind) {
@@ -143,7 +143,7 @@ Bench::Inputs happening(unsigned kind) {
     case 6:
       in.at_rest = true;
       break;
-    case 7:  // an event wins over a clear beside it
+    case 7:  // an event wins over a clear in the same clock
       in.clear = ~0U;
       in.step_fault = 1;
       break;
@@ -180,9 +180,9 @@ Bench::Inputs happening(unsigned kind) {
   }
   return in;
 }
-constexpr unsigned kHappenings = 18;  // the last is nothing
+constexpr unsigned kHappenings = 18;  // the last one is no event
 
-// Three happenings at any distance of 0 to 2 clocks, with each reaction, from reset.
+// Three events at any distance of 0 to 2 clocks, with each reaction, from reset.
 void every_order() {
   Bench bench(0);
   std::uint64_t cycles = 1;
@@ -203,7 +203,7 @@ void every_order() {
       const unsigned second = draw(3);
       for (unsigned i = 0; i < second; ++i) bench.clock({});
       bench.clock(happening(draw(kHappenings)));
-      // Every other time to the end of a stop.
+      // Every other run continues to the end of a stop.
       const unsigned rest_for = order % 2 == 0 ? 3 : 36;
       for (unsigned i = 0; i < rest_for; ++i) bench.clock({});
       cycles += 5 + rest_for + first + second;
@@ -214,8 +214,8 @@ void every_order() {
   EXPECT_GT(bench.cuts(), 10'000U);
 }
 
-// HOLD, or the button's hold, set and taken back in every clock of every course of eight clocks of the pieces: nothing,
-// a fixed one, another one, and the time base coming to rest.
+// HOLD, or the button's hold, set and released in every clock of every sequence of six clocks of the pieces: none, a
+// fixed one, another one, and a fixed one with the time base at rest.
 void holds(bool button) {
   Bench bench(0);
   constexpr unsigned kClocks = 6;
@@ -253,7 +253,7 @@ void random_events() {
   const std::uint64_t length = scaled(500'000);
   unsigned rest_every = 10;
   unsigned moves_every = 10;
-  unsigned course = 0;  // of the pieces
+  unsigned course = 0;  // state of the pieces
   bool expired = false;
   bool link_lost = false;
   bool emergency = false;

@@ -1,4 +1,5 @@
-// Lockstep of the watchdog: short times to their end, writes near it, and other settings, in every cycle.
+// Lockstep of the watchdog: short times to their end, writes close to it, and other settings; compared in every
+// cycle.
 #include "trammel/model/watchdog.hpp"
 
 #include <Vdut.h>
@@ -58,7 +59,7 @@ class Bench {
 
 model::Setting time_of(std::uint32_t units) { return {true, card_map::reg::kWatchdog, units}; }
 
-// Each time to its end and beyond; written anew half way, and in each of the last clocks before it.
+// Each time to its end and beyond; rewritten half way, and in each of the last clocks before it.
 void around_the_end() {
   Bench bench(0);
   for (const std::uint32_t units : {1U, 2U, 3U}) {

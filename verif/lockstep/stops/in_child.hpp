@@ -1,5 +1,5 @@
-// Goes on from the present state in a child process: RTL, model and host as they stand, and this process as it was
-// afterwards. So a window of clocks is tried without the way to it.
+// Continues from the present state in a child process (RTL, model and host); the state of this process does not
+// change. So each window of clocks needs the way to it only once.
 #pragma once
 
 #include <sys/wait.h>
@@ -13,7 +13,8 @@
 
 namespace trammel::test {
 
-// What `work` returns, a text, or throws, as a std::runtime_error. The child shares no threads with its parent.
+// Returns the text that `work` returns; its exceptions are thrown as std::runtime_error. The child has none of its
+// parent's threads.
 template <class Work>
 std::string in_child(const Work& work) {
   std::array<int, 2> ends{};

@@ -1,5 +1,5 @@
-// Counts steps at the STEP pins and holds every pulse against the times that docs/reference/behaviour.md promises. It
-// sees the pins alone.
+// Counts steps at the STEP pins and checks every pulse against the times that docs/reference/behaviour.md promises.
+// It sees only the pins.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace trammel::test {
 inline constexpr unsigned kWatchedAxes = 4;
 using Place = std::array<std::int32_t, kWatchedAxes>;  // pulses
 
-// How the pins of an axis work: MODE, and the shortest times, clocks.
+// Settings of an axis's pins: MODE, and the shortest times, clocks.
 struct AxisPins {
   enum Mode : std::uint8_t { kStepDir, kUpDown, kQuadrature };
   Mode mode = kStepDir;
@@ -25,25 +25,25 @@ struct AxisPins {
   std::uint32_t hold = 0;
 
   std::uint32_t shortest() const { return length > 1 ? length : 1; }
-  // From leading edge to leading edge, and from trailing to leading at a reversal.
+  // Minimum clocks from leading edge to leading edge; reversal(): from trailing to leading edge at a reversal.
   std::uint32_t turnover() const { return shortest() + space + (length == 0 ? 5 : 6); }
   std::uint32_t reversal() const { return space + hold + setup + 12; }
 };
 
 struct Pulse {
-  std::uint64_t clock;  // of its leading edge
+  std::uint64_t clock;  // clock of its leading edge
   unsigned axis;
   int direction;
 };
 
 struct OutputChange {
   std::uint64_t clock;
-  std::uint32_t levels;  // from then on
+  std::uint32_t levels;  // levels from this clock on
 };
 
 class PinWatch {
  public:
-  // The pins as they stand are at rest.
+  // The present levels of the pins must be their levels at rest.
   void begin(const std::array<AxisPins, kWatchedAxes>& axes, const StepPins& pins) {
     for (unsigned n = 0; n < kWatchedAxes; ++n) {
       states_[n] = {};
@@ -52,7 +52,7 @@ class PinWatch {
     }
     watches_ = true;
   }
-  // Until begin() pins may do anything: a reset cuts pulses, MODE changes levels.
+  // Ends the checks until begin(): a reset cuts pulses, and MODE changes levels.
   void end() { watches_ = false; }
 
   void clock(std::uint64_t now, const StepPins& pins) {
@@ -70,13 +70,13 @@ class PinWatch {
     }
   }
 
-  // The first thing at a pin that must not be; empty: none.
+  // The first violation at a pin; empty: none.
   std::string error;
   std::vector<Pulse> pulses;  // since the first begin()
   Place place{};
-  std::uint64_t last_change = 0;  // clock in which any of the STEP pins last moved
+  std::uint64_t last_change = 0;  // clock of the last change of any STEP pin
   std::vector<OutputChange> output_changes;
-  // The places as they were at a clock.
+  // The position at a clock.
   Place place_at(std::uint64_t clock) const {
     Place at{};
     for (const Pulse& pulse : pulses) {
@@ -95,10 +95,10 @@ class PinWatch {
   struct Axis {
     AxisPins pins;
     unsigned before = 0;  // levels without their inversion: [0] first pin, [1] second
-    int direction = 0;    // of the last pulse; 0: none yet
+    int direction = 0;    // direction of the last pulse; 0: none yet
     std::uint64_t leading = 0;
     std::uint64_t trailing = 0;
-    std::uint64_t turned = 0;  // DIR
+    std::uint64_t turned = 0;  // clock of the last change of DIR
   };
 
   static unsigned levels(const AxisPins& axis, const StepPins& pins, unsigned n) {
@@ -126,7 +126,7 @@ class PinWatch {
     place[n] += direction;
     pulses.push_back({now_, n, direction});
   }
-  // Step and direction, or up and down.
+  // Modes step and direction, and up and down.
   void change(unsigned n, Axis& axis, unsigned at) {
     const bool was = active(axis.pins, axis.before);
     const bool is = active(axis.pins, at);
@@ -147,7 +147,7 @@ class PinWatch {
       axis.trailing = now_;
     }
   }
-  // A leads going up: 00, 10, 11, 01 as AB. The pulse behind an edge has no second edge here.
+  // A leads in the positive direction: 00, 10, 11, 01 as AB. In quadrature a pulse has only one edge.
   void turn(unsigned n, Axis& axis, unsigned at) {
     static constexpr std::array<unsigned, 4> kPlace{0, 1, 3, 2};  // by levels {B, A}
     const unsigned moved = (kPlace[at] - kPlace[axis.before]) & 3U;

@@ -1,5 +1,5 @@
-// A card with its causes of a stop wired, and a host at its register port. What is known of the card: its pins, seen by
-// a PinWatch, and what the port answers.
+// A card with its causes of a stop wired, and a host at its register port. The bench observes only the pins, with a
+// PinWatch, and the port's answers.
 #pragma once
 
 #include <cstdint>
@@ -20,30 +20,30 @@ namespace trammel::test {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// Each mode of the pins once; times that differ. Steps of an axis may come every kTickClocks at the closest.
+// Each mode of the pins once, with different times. Steps of an axis are at least kTickClocks apart.
 inline constexpr std::array<AxisPins, kWatchedAxes> kAxisPins{{{AxisPins::kStepDir, false, 2, 3, 2, 2},
                                                                {AxisPins::kUpDown, false, 3, 2, 3, 1},
                                                                {AxisPins::kQuadrature, false, 2, 3, 1, 3},
                                                                {AxisPins::kStepDir, true, 0, 4, 2, 2}}};
 inline constexpr unsigned kTickClocks = 16;
-// From full ratio to rest 1,024 clocks; the ramp has the ticks of half of them.
+// 1,024 clocks from full ratio to rest; the ramp has the ticks of half of them.
 inline constexpr std::uint32_t kSlew = 1U << 20;
 inline constexpr std::uint64_t kRampClocks = (std::uint64_t{1} << 30) / kSlew;
 
-// Outputs, all on after a reset: one changes at the cause of a stop, one at rest.
+// Outputs, all on after a reset: one changes at the cause of a stop, one at rest, one never.
 enum Output : std::uint32_t { kOutputKept = 1, kOutputSafeAtCause = 2, kOutputSafeAtRest = 4, kOutputsAfterReset = 7 };
-inline constexpr unsigned kDriveAxis = 2;  // the axis whose drive kDriveInput tells of
+inline constexpr unsigned kDriveAxis = 2;  // the axis whose drive reports by kDriveInput
 
-// Of each card here.
+// The straps of each card here.
 inline sim::CardStraps watched_straps() {
   sim::CardStraps straps;
   straps.output_idle = kOutputsAfterReset;
   return straps;
 }
 
-// Inputs of the card, and the roles that they have. The programs move axis 0 up and axis 1 down.
+// Inputs of the card and their roles. The programs move axis 0 in the positive and axis 1 in the negative direction.
 enum Input : std::uint32_t {
-  kProbeInput = 2,  // of the command PROBE
+  kProbeInput = 2,  // for the command PROBE
   kLimitPlusInput = 5,
   kLimitMinusInput = 6,
   kDriveInput = 7,
@@ -51,7 +51,7 @@ enum Input : std::uint32_t {
   kToolSetterInput = 9,
   kFeedHoldInput = 10,
   kCycleStartInput = 11,
-  kBeginInput = 12,        // the level that a program waits for
+  kBeginInput = 12,        // a program waits for this level
   kEmergencyStopPin = 32,  // a pin of its own
 };
 
@@ -62,7 +62,7 @@ class StopBench {
     host.wait(400);
   }
 
-  // Times, modes, roles; the watch counts from here on.
+  // Sets times, modes and roles; the watch begins.
   void set_up() {
     for (unsigned n = 0; n < kWatchedAxes; ++n) {
       const AxisPins& axis = kAxisPins[n];
@@ -100,7 +100,7 @@ class StopBench {
     const std::uint64_t data = read(low);
     return data | std::uint64_t{read(high)} << 32;
   }
-  // False when a word was refused.
+  // False if a word was refused.
   bool send(const driver::Command& command) {
     std::vector<std::uint32_t> words;
     driver::encode(command, number, words);
@@ -114,7 +114,7 @@ class StopBench {
     if (input == kEmergencyStopPin) return host.press_emergency_stop(level);
     host.set_pins((host.pins() & ~(1U << input)) | (level ? 1U << input : 0U));
   }
-  // Until an axis has made so many pulses, on either side.
+  // Waits until an axis has made this many pulses, in either direction.
   void wait_pulses(unsigned axis, std::int32_t count) {
     for (unsigned clocks = 0; std::abs(watch.place[axis]) < count; ++clocks) {
       if (clocks == 20'000) throw std::logic_error("the program does not come to its window");
@@ -131,7 +131,7 @@ class StopBench {
  public:
   AxiHostOf<WatchedCard> host;
   PinWatch watch;
-  std::uint8_t number = 0;  // of the next command
+  std::uint8_t number = 0;  // number of the next command
 };
 
 }  // namespace trammel::test

@@ -1,4 +1,4 @@
-// What stops the card, a line each: how it is brought about, which bit of FAULT it is, how late it may be.
+// The causes of a stop, one line each: how the test causes it, its bit of FAULT, its latest time.
 #pragma once
 
 #include <string>
@@ -17,7 +17,8 @@ inline const char* name_of(Reaction reaction) {
   return kNames[static_cast<int>(reaction)];
 }
 
-// What a cause does to a state: by the steps that the pins show after it where a switch needs a step.
+// The effect of a cause on a state. kByPulses: depends on whether the pins show a step after it, for switches that
+// need a step.
 enum class Effect { kStop, kNothing, kByPulses, kHold, kCut };
 
 struct Write {
@@ -30,37 +31,38 @@ struct Cause {
   std::uint32_t fault;  // 0: none
   std::vector<Reaction> reactions;
   Effect (*effect)(const State&);
-  // One of these: an input rises, a register is written, the program itself, a time that was set before.
+  // The trigger, one of: a rising input, a register write, the program itself, a time set before.
   std::variant<Input, Write, void (*)(Program&, unsigned), std::uint64_t> strike;
-  // Clocks from the strike to the time in the area STOP, where they have bounds.
+  // Bounds of the clocks from the trigger to the time in the area STOP, if there are bounds.
   std::uint64_t soonest = 0;
   std::uint64_t latest = 0;
-  // Clearing FAULT works while the cause lasts.
+  // FAULT can be cleared while the cause lasts.
   bool cleared_while_it_lasts = true;
   void (*prepare)(StopBench&) = nullptr;  // before the program is sent
-  void (*end)(StopBench&) = nullptr;      // the cause ends; an input's by falling
-  // Of a limit.
+  void (*end)(StopBench&) = nullptr;      // ends the cause; for an input: its falling edge
+  // Only for limits.
   unsigned axis = 0;
   int direction = 0;
-  // It is there again after a reset.
+  // The cause is active again after a reset.
   bool outlives_reset = false;
-  // The axis may lose steps on a ramp.
+  // The axis may lose steps during a ramp.
   bool loses_steps = false;
-  // It comes when the host has made no access for the time of `strike`, and the program begins by an input.
+  // The cause comes if the host makes no access for the time of `strike`; the program begins by an input.
   bool of_silence = false;
 
   bool of_program() const { return std::holds_alternative<void (*)(Program&, unsigned)>(strike); }
   bool timed() const { return std::holds_alternative<std::uint64_t>(strike); }
 };
 
-// From a pin to its role (the scan takes 64 clocks), from there to FAULT: behaviour.md. STOP is taken a clock later.
+// From a pin to its role (the scan takes 64 clocks), and from there to FAULT: behaviour.md. STOP is taken one clock
+// later.
 inline constexpr std::uint64_t kRoleSoonest = 3;
 inline constexpr std::uint64_t kRoleLatest = 66;
 inline constexpr std::uint64_t kRoleToStop = 3;
 
 inline constexpr std::uint16_t kShortOvertravel = 3;  // steps
-inline constexpr std::uint32_t kLateSpace = 400;      // clocks: STEP_SPACE for which steps wait for too long
-inline constexpr unsigned kFirstWindowTick = 30;      // of causes that a program brings
+inline constexpr std::uint32_t kLateSpace = 400;      // clocks: with this STEP_SPACE steps wait too long
+inline constexpr unsigned kFirstWindowTick = 30;      // for causes made by a program
 
 inline driver::FeedCommand& last_piece(Program& program) {
   driver::FeedCommand* found = nullptr;
@@ -98,7 +100,7 @@ inline Effect in_motion(const State& state) {
   return state.runs ? unless_reset<Effect::kStop>(state) : Effect::kNothing;
 }
 inline Effect outside_probing(const State& state) { return state.probing ? Effect::kNothing : in_motion(state); }
-// Steps of axis 0 come, in the window or once the program goes on.
+// Steps of axis 0 come, in the window or when the program continues.
 inline Effect with_steps(const State& state) {
   return std::string(state.name) == "between commands" ? Effect::kNothing : unless_reset<Effect::kStop>(state);
 }
@@ -150,8 +152,8 @@ inline Cause watchdog() {
   cause.cleared_while_it_lasts = false;
   return cause;
 }
-// A unit of LINK_TIMEOUT passes from one multiple of 65,536 clocks to the next: the link is lost at the second one
-// after the last access.
+// A unit of LINK_TIMEOUT passes at each multiple of 65,536 clocks. The link is lost at the second multiple after the
+// last access.
 inline Cause link_loss() {
   Cause cause{"link loss",
               field::kFaultLinkLoss,
@@ -166,7 +168,7 @@ inline Cause link_loss() {
   cause.of_silence = true;
   return cause;
 }
-// By its synchroniser and latch.
+// Through its synchroniser and latch.
 inline Cause emergency_stop() {
   Cause cause{"emergency stop",
               field::kFaultEmergencyStop,
@@ -179,7 +181,7 @@ inline Cause emergency_stop() {
   cause.outlives_reset = true;
   return cause;
 }
-// The end comes to be where the axis has been already: its next step further out is one too far.
+// The new end is at a position that the axis has passed: its next step outward is one too far.
 inline Cause soft_limit() {
   constexpr std::uint32_t kFarMinus = 0xC0000000U;
   constexpr std::uint32_t kFarPlus = 0x3FFFFFFFU;

@@ -1,6 +1,6 @@
-// One stop, from its cause to the card's next move, judged by the pins and by what the register port answers. The judge
-// knows the program, the cause and docs/reference/behaviour.md; it sees neither the golden model nor a signal of the
-// design.
+// One stop, from its cause to the card's next move, judged by the pins and the answers of the register port. The
+// judge knows the program, the cause and docs/reference/behaviour.md; it sees neither the golden model nor an
+// internal signal of the design.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace trammel::test {
 
 class StopJudge {
  public:
-  // `struck`: when a cause that comes by itself comes.
+  // `struck`: the clock of a cause that comes by itself.
   StopJudge(StopBench& bench, const StopCase& of, std::optional<std::uint64_t> struck)
       : bench_(bench), case_(of), struck_(struck.value_or(0)) {}
 
-  // Throws lockstep::Mismatch with the first claim that does not hold. True when a fault stopped the card.
+  // Throws lockstep::Mismatch with the first claim that fails. Returns true if a fault stopped the card.
   bool run() {
     if (case_.state.resets) return run_with_reset();
     if (!case_.cause.of_program() && !case_.cause.timed()) {
@@ -41,16 +41,16 @@ class StopJudge {
   }
 
  private:
-  // From a stop at once to the leading edge of the last pulse: two ticks in flight, at most 32 clocks apart, and a wait
-  // for the times of an axis.
+  // From an immediate stop to the leading edge of the last pulse: two ticks in flight, at most 32 clocks apart, and a
+  // wait for the times of an axis.
   static constexpr std::uint64_t kAtOnceClocks = 80;
-  // On a ramp from full ratio the path goes on for so long at least: its last tick may come before the rest.
+  // On a ramp from full ratio the path continues at least this long: its last tick may come before the rest.
   static constexpr std::uint64_t kRampAtLeast = 400;
-  // Beside the ramp itself: from cause to ramp, the last ticks, waits.
+  // In addition to the ramp itself: from cause to ramp, the last ticks, waits.
   static constexpr std::uint64_t kRampMargin = 200;
   static constexpr std::uint64_t kQuietClocks = 600;
-  static constexpr unsigned kResetClock = 64;        // of the window
-  static constexpr std::uint64_t kSecondCause = 90;  // clocks behind the first, when that must be latched
+  static constexpr unsigned kResetClock = 64;        // clock of the window in which the reset comes
+  static constexpr std::uint64_t kSecondCause = 90;  // clocks after the first cause, when that must be latched
   static constexpr unsigned kTicksInFlight = 3;
 
   void claim(bool holds, const std::string& what) const {
@@ -60,7 +60,7 @@ class StopJudge {
   void claim_equal(const A& is, const B& must, const std::string& what) const {
     claim(is == static_cast<A>(must), what + " is " + text(is) + ", not " + text(static_cast<A>(must)));
   }
-  // `wrong`: what is; empty: nothing.
+  // `wrong`: a description of the error, empty if there is none.
   void claim_nothing(const std::string& wrong) const { claim(wrong.empty(), wrong); }
   StopTimes times() const { return {struck_, stop_time_, rest_time_, second_ != 0}; }
   void judge_place(const char* when) {
@@ -105,8 +105,8 @@ class StopJudge {
     bench_.host.wait(kRoleLatest + 4);
   }
 
-  // To the rest after a stop, or the program's end. What the program waits for comes when the cause has had its time.
-  // True: stopped.
+  // Runs until the rest after a stop, or the program's end. Inputs that the program waits for come after the cause's
+  // latest time. Returns true if stopped.
   bool follow() {
     if (case_.cause.of_silence && bench_.now() < struck_ + case_.cause.latest)
       bench_.host.wait(struck_ + case_.cause.latest - bench_.now());
@@ -129,7 +129,7 @@ class StopJudge {
     return false;
   }
 
-  // The claims that hold after any case.
+  // Claims that hold after every case.
   void judge_pins() { claim(watch().error.empty(), watch().error); }
   void claim_still(std::uint64_t since, const std::string& when) {
     claim(watch().last_change <= since, "a pin moves " + when);
@@ -155,7 +155,7 @@ class StopJudge {
       });
     };
     if (stopped) claim(into(struck_), "a limit stops the card without a step into it");
-    // Where the level is a role, a path step is at most so late at its pin.
+    // If the level is a role, a path step is at most this late at its pin.
     if (!stopped) claim(!into(struck_ + kRoleLatest + 40), "a step into the limit does not stop the card");
   }
 
@@ -172,7 +172,7 @@ class StopJudge {
     live_on();
   }
 
-  // A streamed line goes on beyond its end, as far as it likes; a probe ends one before.
+  // A streamed line may continue any distance beyond its end; a probe ends a line before its end.
   void judge_end_point() {
     const Program& program = case_.program;
     if (!case_.state.streaming && !case_.state.tripped)
@@ -185,7 +185,7 @@ class StopJudge {
     claim(ticks < 10'000, "the program ends beside its line: " + text(watch().place));
   }
 
-  // STOP: the first cause alone, its time, the positions at the pins then, the commands begun.
+  // STOP: only the first cause, its time, the positions at the pins then, the commands begun.
   void judge_stop_area() {
     const Cause& cause = case_.cause;
     const std::uint32_t fault = bench_.read(reg::kStopFault);
@@ -204,7 +204,7 @@ class StopJudge {
     claim(pieces <= bench_.read(reg::kRestFeedBegun) && pieces <= case_.program.commands.size(), "STOP_FEED_BEGUN");
     if (!case_.program.direct && place != Place{}) claim(pieces != 0, "STOP_FEED_BEGUN is 0 in motion");
   }
-  // The command that was begun last is one whose path goes through the place, but for ticks that are not at the pins.
+  // The path of the command begun last goes through the position, except for ticks that are not at the pins yet.
   void judge_begun(std::uint32_t begun, const Place& place, const char* what) const {
     const Program& program = case_.program;
     if (case_.state.tripped) return;
@@ -212,7 +212,7 @@ class StopJudge {
     claim(begun <= program.paths.size(), std::string(what) + " is " + text(begun));
     const std::uint64_t beyond = case_.state.streaming ? 300 : 0;
     const std::uint64_t ticks = begun == 0 ? 0 : program.paths[begun - 1].ticks + beyond;
-    // Place after so many ticks of it, negative: of the commands before it.
+    // The position after `tick` ticks of it; negative: in the commands before it.
     const auto at = [&](std::int64_t tick) {
       std::uint32_t number = begun;
       while (tick < 0 && number > 1) tick += static_cast<std::int64_t>(program.paths[--number - 1].ticks);
@@ -231,12 +231,12 @@ class StopJudge {
     claim(false, std::string(what) + " is " + text(begun) + " at the place " + text(place));
   }
 
-  // REST: filled when nothing moves any more; positions, and the ticks that make them.
+  // REST is filled when nothing moves any more: positions, and the ticks that make them.
   void judge_rest_area(std::uint32_t fault) {
     claim((bench_.read(reg::kRestStatus) & field::kStatusSettled) != 0, "REST_STATUS is not settled");
     rest_time_ = watch_time(bench_.read_pair(reg::kRestTimeLo, reg::kRestTimeHi));
     claim(rest_time_ > stop_time_ && rest_time_ <= bench_.now(), "REST_TIME is " + text(rest_time_));
-    // The second cause is in it where it had come by then.
+    // REST_FAULT includes the second cause if that had come by then.
     const std::uint32_t at_rest = bench_.read(reg::kRestFault);
     const bool second_may = second_ != 0 && rest_time_ >= second_ + kRoleSoonest;
     const bool second_must = second_ != 0 && rest_time_ > second_ + kRoleLatest + kRoleToStop;
@@ -308,7 +308,7 @@ class StopJudge {
     live_on();
   }
 
-  // Clearing moves nothing, and removes what may be removed.
+  // Clearing moves nothing, and removes only causes that may be removed.
   void judge_clearing() {
     const Cause& cause = case_.cause;
     constexpr std::uint32_t kAll = 0x7FFFF;
@@ -340,7 +340,7 @@ class StopJudge {
     claim_equal(status() & field::kStatusBusy, 0U, "STATUS.busy after clearing");
   }
 
-  // The card takes the next program: away from the limits, which stay active.
+  // The card accepts the next program: it moves away from the limits, which stay active.
   void live_on() {
     bench_.write(reg::kHold, 0);
     bench_.write(reg::kStreaming, 0);
@@ -361,7 +361,7 @@ class StopJudge {
     judge_pins();
   }
 
-  // The feed hold button: no fault; the card stands until cycle start, also when the button is free again.
+  // The feed hold button: no fault; the card is stationary until cycle start, even after the button is released.
   void judge_hold() {
     bench_.host.wait(kRoleLatest + 8);
     claim((status() & field::kStatusButtonHold) != 0, "STATUS.button_hold is 0");
@@ -385,7 +385,7 @@ class StopJudge {
     finished_by_hold_ = true;
   }
 
-  // An abort cuts: what is in flight still comes to the pins, soon; REST says whether it is exact.
+  // An abort cuts: pulses in flight still reach the pins, soon; REST tells whether it is exact.
   void judge_cut() {
     const bool was_busy = std::string(case_.state.name) != "between commands";
     const std::uint64_t cut = bench_.now();
@@ -421,7 +421,8 @@ class StopJudge {
     }
   }
 
-  // A reset comes in the window, before the cause or after it: pulses may be cut, and nothing is left of either.
+  // A reset comes in the window, before or after the cause: pulses may be cut, and nothing remains of the program or
+  // the cause.
   bool run_with_reset() {
     const unsigned before = std::min(case_.clock, kResetClock);
     bench_.host.wait(before);
@@ -429,7 +430,7 @@ class StopJudge {
     judge_pins();
     bench_.watch.end();
     bench_.host.reset(1 + case_.clock % 3);
-    reset_ = bench_.now() + 1;  // it takes effect for a clock more
+    reset_ = bench_.now() + 1;  // it takes effect one clock later
     bench_.host.wait(4);
     const std::uint64_t reset = bench_.now();
     if (case_.clock >= kResetClock) {
@@ -451,7 +452,7 @@ class StopJudge {
     live_on();
     return false;
   }
-  // A register's write may be cut by the reset.
+  // The reset may cut a register write.
   void strike_before(std::uint64_t clocks) {
     const auto* write = std::get_if<Write>(&case_.cause.strike);
     if (write == nullptr) {

@@ -1,5 +1,5 @@
-// What judges the stops, judged: each of its claims is seen to fail, over a sound card whose pins, answers or inputs
-// are falsified on their way.
+// Tests of the stop judge: each of its claims is seen to fail, on a correct card whose pins, answers or inputs are
+// falsified.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@ namespace {
 
 using testing::HasSubstr;
 
-// What is false, and from when on: `since` counts clocks from the first access to a register on.
+// A falsification: its kind and its start. `since` counts clocks from the first access to the register `trigger`.
 struct Lie {
   std::uint32_t trigger = 0;  // 0: from the beginning
   std::function<StepPins(const StepPins& pins, const StepPins& before, std::uint64_t since)> pins;
   std::function<void(WatchedCard::Inputs&, std::uint64_t since)> inputs;
-  // Bits that are wrong in each answer to a read of `address`, and with it other's.
+  // Bits that are wrong in each answer to a read of `address`, and in simultaneous answers.
   std::uint32_t address = 0;
   std::uint32_t bits = 0;
 };
@@ -62,7 +62,7 @@ const auto& named(const List& list, const std::string& name) {
   throw std::logic_error("no " + name);
 }
 
-// The claim that does not hold; empty: all hold.
+// The claim that fails; empty: none.
 std::string broken_claim(const char* cause, Reaction reaction, const char* state, const Lie& lie, unsigned clock = 3) {
   try {
     Tally tally;
@@ -89,7 +89,7 @@ Lie wrong(std::uint32_t address, std::uint32_t bits = 1) {
   lie.bits = bits;
   return lie;
 }
-// From the first access to FAULT on: the judge looks there when it waits for a stop.
+// From the first access to `trigger` on. For FAULT: the judge reads it when it waits for a stop.
 Lie wrong_later(std::uint32_t address, std::uint32_t bits, std::uint32_t trigger) {
   Lie lie = wrong(address, bits);
   lie.trigger = trigger;
@@ -107,14 +107,14 @@ Lie at_inputs(std::uint32_t trigger, std::function<void(WatchedCard::Inputs&, st
   lie.inputs = std::move(inputs);
   return lie;
 }
-// A pulse of axis 0 that nobody counted, so many clocks after an access.
+// A pulse of axis 0 that the card does not count, a number of clocks after an access.
 Lie pulse_after(std::uint32_t trigger, std::uint64_t clocks) {
   return at_pins(trigger, [clocks](StepPins pins, const StepPins&, std::uint64_t since) {
     if (since >= clocks && since < clocks + 4) pins.first |= 1;
     return pins;
   });
 }
-// Clears bits of what is written to an address.
+// Clears bits of the data written to an address.
 Lie never_written(std::uint32_t address, std::uint32_t bits) {
   return at_inputs(0, [=](WatchedCard::Inputs& in, std::uint64_t) {
     if (in.awaddr == address) in.wdata &= ~bits;
@@ -136,16 +136,16 @@ constexpr auto kAtOnce = Reaction::kAtOnce;
 Lie no_input(Input input) {
   return at_inputs(0, [=](WatchedCard::Inputs& in, std::uint64_t) { in.pins &= ~(1U << input); });
 }
-// From the judge's first look at STATUS on.
+// From the judge's first read of STATUS on.
 Lie pressed(Input input) {
   return at_inputs(reg::kStatus, [=](WatchedCard::Inputs& in, std::uint64_t) { in.pins |= 1U << input; });
 }
 constexpr const char* kDrive = "drive fault";
 
-// Pulses, and those that come after rest.
+// Pulses, including pulses after rest.
 std::vector<Falsified> falsified_pulses() {
   const Lie short_pulses = at_pins(0, [](StepPins pins, const StepPins& before, std::uint64_t) {
-    pins.first &= before.first | 8;  // each pulse of axes 0 to 2 begins a clock late
+    pins.first &= before.first | 8;  // each pulse of axes 0 to 2 begins one clock late
     return pins;
   });
   // One pulse of axis 0 is lost.
@@ -201,7 +201,7 @@ std::vector<Falsified> falsified_areas() {
   };
 }
 
-// What a stop leaves, and what clears it.
+// The state after a stop, and clearing.
 std::vector<Falsified> falsified_end() {
   return {
       {kDrive, kRamp, "line", wrong_later(reg::kStatus, field::kStatusBusy, reg::kRestFault), "STATUS"},
@@ -226,7 +226,7 @@ std::vector<Falsified> falsified_end() {
   };
 }
 
-// Outputs stand at these levels from the first access to a register on.
+// Outputs have these levels from the first access to a register on.
 Lie outputs(std::uint32_t trigger, std::uint32_t on, std::uint32_t off = 0) {
   return at_pins(trigger, [=](StepPins pins, const StepPins&, std::uint64_t) {
     pins.outputs = (pins.outputs | on) & ~off;
@@ -256,7 +256,7 @@ std::vector<Falsified> falsified_outputs() {
   };
 }
 
-// Reactions; causes that do nothing or too much, or come second.
+// Reactions; causes with no effect or too much, and second causes.
 std::vector<Falsified> falsified_reactions() {
   return {
       {kDrive, kRamp, "line", never_written(reg::kStopReaction, ~0U), "the ramp ends"},

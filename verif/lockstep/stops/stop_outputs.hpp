@@ -1,5 +1,5 @@
-// What a stop does to the card's outputs, seen at their pins, and to the machine's place, seen in PLACE: what must be
-// there by docs/reference/behaviour.md, and what is wrong with it.
+// The effect of a stop on the card's outputs, seen at their pins, and on the machine's place, seen in PLACE: the
+// effect that docs/reference/behaviour.md requires, and a description of errors.
 #pragma once
 
 #include <algorithm>
@@ -15,29 +15,29 @@ struct StopCase {
   Reaction reaction;
   const State& state;
   const Program& program;
-  unsigned clock;  // of the window
+  unsigned clock;  // clock of the window
 
   std::string name() const {
     return std::string(cause.name) + ", " + name_of(reaction) + ", " + state.name + ", clock " + std::to_string(clock);
   }
 };
 
-// Clocks of the watch.
+// In clocks of the watch.
 struct StopTimes {
   std::uint64_t struck = 0;
   std::uint64_t stop = 0;
   std::uint64_t rest = 0;
-  bool second = false;  // a drive's fault came behind the first cause
+  bool second = false;  // a drive's fault came after the first cause
 };
 
-// From the leading edge of a pulse to the tick that made it, at most.
+// Maximum clocks from the tick to the leading edge of its pulse.
 inline constexpr std::uint64_t kPulseBehindTick = 80;
-// More where steps wait for a space that is too long: up to five of them, and one under way.
+// More if steps wait for a space that is too long: up to five of them, and one under way.
 inline constexpr std::uint64_t kWaitingSteps = 6 * (kLateSpace + 10);
-// STOP is taken a clock after FAULT shows the cause; pins are seen a clock later than registers.
+// STOP is taken one clock after FAULT shows the cause; pins are seen one clock later than registers.
 inline constexpr std::uint64_t kOutputSlack = 3;
 
-// The clock since `from` in which outputs first lack a bit.
+// The first clock from `from` on in which the output is off.
 inline std::optional<std::uint64_t> fell(const PinWatch& watch, std::uint32_t output, std::uint64_t from) {
   for (const OutputChange& change : watch.output_changes) {
     if (change.clock >= from && (change.levels & output) == 0) return change.clock;
@@ -50,7 +50,7 @@ inline std::string changed_outputs(const PinWatch& watch, std::uint64_t since) {
   return changed ? "an output changes without a stop" : "";
 }
 
-// Of an output that must have fallen, and stays.
+// Describes an error of an output that must have fallen and must stay off.
 inline std::string wrong_fall(const PinWatch& watch, std::uint32_t output, const char* name, std::uint64_t since,
                               std::uint64_t soonest, std::uint64_t latest) {
   const std::optional<std::uint64_t> clock = fell(watch, output, since);
@@ -64,7 +64,7 @@ inline std::string wrong_fall(const PinWatch& watch, std::uint32_t output, const
 }
 
 inline std::string wrong_outputs_of_a_stop(const PinWatch& watch, const StopTimes& times, const StopCase& of) {
-  // The emergency stop's latch needs no clock.
+  // The emergency stop's latch acts without a clock.
   const bool latched = of.cause.fault == field::kFaultEmergencyStop;
   const std::uint64_t begin = latched ? times.struck : times.stop - kOutputSlack;
   std::string wrong = wrong_fall(watch, kOutputSafeAtCause, "at the cause", of.cause.of_program() ? 0 : times.struck,
@@ -82,16 +82,17 @@ inline std::string wrong_outputs_of_a_cut(const PinWatch& watch, std::uint64_t s
   return wrong.empty() ? wrong_fall(watch, kOutputSafeAtRest, "at rest", struck, struck, latest) : wrong;
 }
 
-// Which axes have, or may have, lost their place, a bit each.
+// The axes that must have, and those that may have, lost their place, a bit each.
 struct LostPlaces {
   std::uint32_t must = 0;
   std::uint32_t may = 0;
 };
 
-// A stop at once takes it from an axis that moves: one that has stepped since a piece or a direct move began.
+// An immediate stop takes the place of each axis that moves: one that has stepped since a piece or a direct move
+// began.
 inline LostPlaces lost_at_once(const PinWatch& watch, const StopTimes& times, const StopCase& of) {
   LostPlaces lost;
-  // What needs a step stops the axes when the hold is over.
+  // Causes that need a step stop the axes when the hold is over.
   if (of.state.at_rest && (watch.pulses.empty() || watch.pulses.back().clock < times.struck)) return lost;
   for (const Pulse& pulse : watch.pulses) {
     lost.may |= 1U << pulse.axis;

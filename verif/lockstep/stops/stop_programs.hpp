@@ -1,4 +1,4 @@
-// What the card is doing when a cause of a stop strikes: programs, and the way to the window of clocks in each.
+// The state of the card when a cause of a stop comes: programs, and the way to the window of clocks in each.
 #pragma once
 
 #include <algorithm>
@@ -11,24 +11,25 @@
 
 namespace trammel::test {
 
-// Of the geometry queue: where the axes stand after so many of its ticks, from its start. A barrier has no ticks.
+// A command of the geometry queue: the position of the axes after a number of its ticks, relative to its start. A
+// barrier has no ticks.
 struct Path {
   std::uint64_t ticks = 0;
   std::function<Place(std::uint64_t)> after;
 };
 
 struct Program {
-  std::vector<driver::Command> commands;       // as they are sent
-  std::vector<driver::Command> rest;           // what the program still needs when finish() has been called
-  std::vector<Path> paths;                     // as GEOMETRY_BEGUN counts them
-  std::function<Place(std::uint64_t)> direct;  // after so many clocks of a direct move; none: a program
+  std::vector<driver::Command> commands;       // in the order in which they are sent
+  std::vector<driver::Command> rest;           // commands that the program still needs when finish() has been called
+  std::vector<Path> paths;                     // in the order in which GEOMETRY_BEGUN counts them
+  std::function<Place(std::uint64_t)> direct;  // position after a number of clocks of a direct move; none: a program
 
   Place end() const {
     Place place{};
     for (const Path& path : paths) add(place, path.after(path.ticks));
     return direct ? direct(~std::uint64_t{0}) : place;
   }
-  // After `taken` ticks of the command that was begun last, of `begun`.
+  // The position after `taken` ticks of the last one of `begun` commands.
   Place at(std::uint32_t begun, std::uint64_t taken) const {
     Place place{};
     for (std::uint32_t i = 0; i + 1 < begun; ++i) add(place, paths.at(i).after(paths.at(i).ticks));
@@ -43,23 +44,24 @@ struct Program {
 struct State {
   const char* name;
   const Program& (*program)();
-  // The program is sent; to the window.
+  // Runs from the sent program to the window.
   void (*enter)(StopBench&);
-  // What a host does so that an undisturbed program comes to its end.
+  // The actions of a host that let an undisturbed program come to its end.
   void (*finish)(StopBench&, const Program&);
-  // Before the program is sent.
+  // Actions before the program is sent.
   void (*prepare)(StopBench&) = nullptr;
   bool runs = true;   // a path or a direct move is under way, in the whole window
-  bool moves = true;  // at full ratio, and goes on for longer than a ramp lasts
+  bool moves = true;  // at full ratio, and continues for longer than a ramp lasts
   bool probing = false;
   bool streaming = false;
-  bool tripped = false;  // a probe stops the path itself: where, only its own tests know
+  bool tripped = false;  // a probe stops the path itself, at a place that only its own tests know
   bool resets = false;   // a reset comes inside the window
-  bool at_rest = false;  // held, and settled
-  bool alone = true;     // comes to its window without the host
+  bool at_rest = false;  // in a hold, and settled
+  bool alone = true;     // reaches its window without the host
 };
 
-// A line by the rule of the page: start + floor(1/2 + k * increment / 2^40). It goes on beyond its ticks in streaming.
+// A line by the documented rule: start + floor(1/2 + k * increment / 2^40). In streaming it continues beyond its
+// ticks.
 inline Path path_of(const driver::LineCommand& line, std::uint64_t silent = 0) {
   const auto at = [line](std::uint64_t ticks) {
     Place place{};
@@ -86,8 +88,8 @@ inline driver::FeedCommand feed_of(std::uint64_t ticks, unsigned clocks = kTickC
   return piece;
 }
 
-// An arc alone at the pins, at one path tick in so many clocks: where the axes stand after each. Each of its path ticks
-// makes a step; the steps of one come within half of that time.
+// Records an arc at the pins, with one path tick per `clocks` clocks: the positions of the axes after each path tick.
+// Each path tick makes a step; the steps of one tick come within half of that time.
 inline std::vector<Place> recorded(const driver::Command& arc, std::uint64_t path_ticks, std::uint64_t ticks,
                                    unsigned clocks) {
   StopBench bench(std::make_unique<RtlAlone>(watched_straps(), kWatchedAxes));
@@ -127,12 +129,12 @@ inline Program program_of(const driver::FeedCommand& piece, const driver::LineCo
   return program;
 }
 
-// A step of axis 0 in each tick.
+// Axis 0 steps in each tick.
 inline driver::LineCommand long_line(std::int64_t ticks = 160) {
   return line(static_cast<std::uint64_t>(ticks), {ticks, -ticks / 2, ticks / 4, -ticks / 8});
 }
 
-// An arc that takes axis 0 up and axis 1 down for its first quarter.
+// An arc that moves axis 0 in the positive and axis 1 in the negative direction in its first quarter.
 inline driver::ArcGeometry circle_geometry(std::int32_t radius) {
   driver::ArcGeometry arc;
   arc.centre_x = radius * driver::kCentreUnitsPerPulse;
@@ -156,11 +158,11 @@ inline Program circle_8_program() {
 inline Program helix_program() {
   driver::HelixGeometry helix;
   helix.arc = circle_geometry(30);
-  // Half of it: the arc generator takes some ticks for a step.
+  // Half of it, because the arc generator takes some ticks per step.
   helix.arc.end_x = 60;
   helix.arc.sweep /= 2;
   const std::uint64_t ticks = driver::least_chord_ticks(helix) + 10;
-  // A step of the third axis in each path tick.
+  // The third axis steps in each path tick.
   helix.further[2] = static_cast<std::int64_t>(driver::make_helix(helix, ticks).path_ticks);
   const driver::ArcChordCommand arc = driver::make_helix(helix, ticks);
   Program program;
@@ -178,7 +180,7 @@ inline Program conic_program() {
   return arc_program(driver::prepare(ellipse), kTickClocks);
 }
 
-// Speeds up from a sixth of the feed over the window.
+// Accelerates from a sixth of the feed rate over the window.
 inline Program ramp_program() {
   Program program = program_of(feed_of(160), long_line(184));
   driver::FeedCommand piece = feed_of(24, 6 * kTickClocks);
@@ -285,7 +287,7 @@ inline void start_direct(StopBench& bench) {
   to_tick_20(bench);
 }
 
-// Made once: an arc's is recorded.
+// Makes the program once, because an arc must be recorded.
 template <Program (*kMake)()>
 const Program& once() {
   static const Program program = kMake();
@@ -355,7 +357,7 @@ inline const std::vector<State>& states() {
     State& reset = add("reset", once<line_program>, to_tick_20);
     reset.resets = true;
     reset.alone = false;
-    // What does not move at full ratio in its window.
+    // States that do not move at full ratio in their windows.
     const std::size_t moving = list.size();
     add("dwell", once<dwell_program>, to_pulses<0, 10, 150>).runs = false;
     add("slowing into a hold", once<line_program>, to_hold, let_go).alone = false;

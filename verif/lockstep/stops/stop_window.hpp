@@ -1,4 +1,5 @@
-// The cases of one cause, reaction and state: the way to the window once, and each clock of it in a child process.
+// The cases of one cause, reaction and state: goes to the window once, and tries each of its clocks in a child
+// process.
 #pragma once
 
 #include <memory>
@@ -10,19 +11,19 @@
 #include "stop_judge.hpp"
 
 namespace trammel::test {
-
+// clocks: covers each phase of the scan of the roles, and eight ticks
 inline constexpr unsigned kWindow = 128;  // clocks: each phase of the scan of the roles, and of eight ticks
 
-// What happened in the cases of one cause and reaction.
+// The results of the cases of one cause and reaction.
 struct Tally {
   std::uint64_t cases = 0;
   std::uint64_t stops = 0;
-  std::uint64_t compared = 0;  // clocks
+  std::uint64_t compared = 0;  // clocks in which RTL and model were compared
 };
 
 inline void choose(StopBench& bench, const Cause& cause, Reaction reaction) {
   const bool ramp = reaction == Reaction::kRamp || reaction == Reaction::kShortRamp;
-  // The second cause is on a ramp, too.
+  // The second cause has a ramp, too.
   bench.write(reg::kStopReaction, (ramp ? cause.fault : 0) | field::kStopReactionDriveFault * (ramp ? 1U : 0U));
   bench.write(reg::kStopCauses,
               reaction == Reaction::kOff ? 0 : field::kStopCausesProbe | field::kStopCausesToolSetter);
@@ -77,7 +78,7 @@ class Window {
   }
 
  private:
-  // The program is sent, and begins when its input rises; no access comes before the judge's first.
+  // The program is sent and begins when its input rises, so that no access comes before the judge's first.
   void wait_for_an_input() {
     program_.commands.insert(program_.commands.begin(), driver::WaitInputCommand{kBeginInput, true});
     program_.paths.insert(program_.paths.begin(), kBarrier);

@@ -1,5 +1,5 @@
 // Every cause of a stop, with each reaction, in each state of the card, at clocks of a window of 128: RTL and golden
-// model in lockstep, and a judge that sees the pins and the register port alone.
+// model in lockstep, and a judge that sees only the pins and the register port.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -42,13 +42,13 @@ std::vector<Row> rows() {
   return all;
 }
 
-// What a program does not bring about in a state is no case, nor is silence where the host has to speak.
+// Excludes causes that the program does not produce in the state, and silence in states that need the host.
 bool is_a_case(const Cause& cause, const State& state) {
   if (cause.of_silence) return state.alone;
   return !cause.of_program() || cause.effect(state) != test::Effect::kNothing;
 }
 
-// `clocks` of the window, spread over it.
+// `clocks`: number of clocks to try, spread over the window.
 Tally judge_row(const Row& row, unsigned clocks, bool in_lockstep, std::uint64_t seed) {
   Tally tally;
   for (const State& state : test::states()) {
@@ -89,8 +89,7 @@ TEST_P(Stops, AreRight) {
             "");
 }
 
-// The judge alone, over RTL that no model is compared with: over sound RTL it complains of nothing, over a seeded bug
-// it must.
+// The judge alone, over RTL without a model: it must accept correct RTL, and must reject each seeded bug.
 TEST_P(Stops, AreJudgedWithoutAModel) {
   EXPECT_EQ(lockstep::judge([&] { judge_row(GetParam(), 1, false, 3); }), "");
 }

@@ -1,5 +1,5 @@
-// A card whose pins are seen in every clock, for a checker that knows nothing else of it: RTL and golden model in
-// lockstep, or the RTL alone, so that the checker can be judged without the model.
+// A card whose pins are seen in every clock, for a checker that has no other information. It is RTL and golden model
+// in lockstep, or the RTL alone, so that the checker can be judged without the model.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ class WatchedCard {
   void set_watch(Watch watch) { watch_ = std::move(watch); }
   virtual Bus bus() const = 0;
   virtual StepPins pins() const = 0;
-  // Compares what is still to be compared; throws lockstep::Mismatch.
+  // Compares the clocks that are still to be compared; throws lockstep::Mismatch.
   virtual void settle() = 0;
   // Clocks in which RTL and model were compared.
   virtual std::uint64_t compared() const = 0;

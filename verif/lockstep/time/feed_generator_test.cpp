@@ -13,7 +13,7 @@ namespace trammel {
 namespace {
 
 constexpr std::uint64_t kComparedSignals = 2;
-// What the card guarantees between two swaps but after a piece that began at rest.
+// Minimum clocks between two swaps, which the card guarantees except after a piece that began at rest.
 constexpr std::uint64_t kSwapDistance = 24;
 
 struct Piece {
@@ -30,7 +30,7 @@ class Bench {
     reset();
   }
 
-  // One clock, whatever comes in it; nothing is enabled from then to the next swap.
+  // One clock of reset, with random other inputs. Nothing is enabled from then to the next swap.
   void reset() {
     checker_.event("reset");
     model::FeedGenerator::Inputs in;
@@ -50,7 +50,7 @@ class Bench {
     in.clear = in.clear || resting_;
     in.enable = started_ && !in.clear && dice_.below(1024) < enable_of_1024_;
     started_ = started_ || in.swap;
-    // From some clock of a piece on to the next swap.
+    // A freeze lasts from a clock of a piece to the next swap.
     if (freeze_in_ != 0 && --freeze_in_ == 0) frozen_ = true;
     if (in.swap) frozen_ = false;
     in.freeze = frozen_;
@@ -64,8 +64,8 @@ class Bench {
     ticks_ += model_.outputs().tick;
   }
 
-  // Loads rate and floor (6 clocks), waits, swaps the piece in at a distance of `clocks` or more from the last swap,
-  // and loads acceleration and jerk, of which the last halfword comes 10 to 13 clocks after it.
+  // Loads rate and floor (6 clocks), waits, swaps the piece in at least `clocks` after the last swap, and loads
+  // acceleration and jerk; their last halfword comes 10 to 13 clocks after the swap.
   void piece(const Piece& p, std::uint64_t clocks, std::uint64_t late = 0) {
     using namespace model::feed_target;
     std::uint64_t used = since_swap_ + idle(3);
@@ -81,7 +81,7 @@ class Bench {
     since_swap_ = idle(2 + late) + shift(kAcceleration, p.acceleration, 4) + shift(kJerk, p.jerk, 4);
   }
 
-  // As the first piece after a barrier: cleared all the while, and loaded whole before its swap.
+  // Like the first piece after a barrier: cleared all the time, and completely loaded before its swap.
   void piece_at_rest(const Piece& p, std::uint64_t rest) {
     using namespace model::feed_target;
     resting_ = true;
@@ -121,7 +121,7 @@ class Bench {
     dut_->freeze_i = in.freeze;
     dut_->clear_i = in.clear;
     dut_->enable_i = in.enable;
-    // Without its valid bit the bus carries anything.
+    // Without its valid bit the bus carries random data.
     dut_->load_i =
         in.load.valid ? lockstep::feed_wire(in.load) : dice_.draw() >> (32 - trammel::bus::feed_load::kValid.offset);
     dut_->swap_i = in.swap;
@@ -155,28 +155,28 @@ class Bench {
   unsigned enable_of_1024_;
   bool started_ = false;
   bool frozen_ = false;
-  std::uint64_t freeze_in_ = 0;   // clocks; 0: not
+  std::uint64_t freeze_in_ = 0;   // clocks until a freeze; 0: none
   bool resting_ = false;          // no piece runs
   std::uint64_t since_swap_ = 0;  // clocks
   std::uint64_t ticks_ = 0;
   std::uint64_t chained_ = 0;
 };
 
-// Corners of every field, at each distance from the shortest to beyond two updates.
+// Corner values of every field, at each distance from the shortest to more than two updates.
 void directed() {
   constexpr std::uint64_t kMax = ~std::uint64_t{0};
   const Piece pieces[] = {
-      {kMax, 0, 0, 1},                                 // a tick a clock but one in 2^48
+      {kMax, 0, 0, 1},                                 // a tick in every clock except one in 2^48
       {kMax, 1, 0, 1},                                 // reaches 1 exactly at the first update
-      {kMax >> 1, std::uint64_t{1} << 62, 0, 1},       // above 1, and up to 8 and over
+      {kMax >> 1, std::uint64_t{1} << 62, 0, 1},       // above 1, and up to 8 and beyond
       {kMax, std::uint64_t{1} << 63, 0, 0xFFFF'FFFF},  // down through 0, floor just below 1
       {std::uint64_t{5} << 32, kMax, 0, 5},            // one below the floor at the first update
-      {0x8000'0000'8000'0000, 0 - std::uint64_t{0x8001'0000}, 0, 0x7FFF'FFFF},  // ticks by the low bits above its floor
+      {0x8000'0000'8000'0000, 0 - std::uint64_t{0x8001'0000}, 0, 0x7FFF'FFFF},  // low bits above its floor make ticks
       {std::uint64_t{5} << 32, 0, 0, 5},                                        // at the floor
-      {0x7FFF'FFFF'FFFF'0000, 0, 0, 0x7FFF'FFFF},  // at the floor but for the low bits, which make the tick
+      {0x7FFF'FFFF'FFFF'0000, 0, 0, 0x7FFF'FFFF},  // at the floor except for the low bits, which make the tick
       {0x8000'0000'1000'0000, kMax >> 1, 0, 1},    // to 1 with low bits that would miss a tick
-      {1, 0, 0, 0x4000'0000},                      // starts below its floor: the first slope is as given
-      {std::uint64_t{1} << 60, 0xFFFF, kMax, 1},   // jerk alone turns it round
+      {1, 0, 0, 0x4000'0000},                      // starts below its floor: the first slope is used as given
+      {std::uint64_t{1} << 60, 0xFFFF, kMax, 1},   // jerk alone reverses it
       {0, 0, (std::uint64_t{1} << 63) - 1, 1},
       {0x0123'4567'89AB'CDEF, 0xFEDC'BA98'7654'3211, 0x0000'0FED'CBA9'8765, 0x0765'4321},
   };
@@ -190,7 +190,7 @@ void directed() {
     bench.piece_at_rest(p, 0);
     bench.wait(200);
   }
-  // A reset in each clock after a swap, up to the first update: nothing that was on its way arrives.
+  // A reset in each clock after a swap, up to the first update: nothing on its way may arrive.
   for (std::uint64_t clocks = 0; clocks <= 40; ++clocks) {
     bench.piece_at_rest(pieces[clocks % std::size(pieces)], 0);
     bench.wait(clocks);
@@ -210,12 +210,12 @@ Piece random_piece(std::mt19937_64& random) {
   if (random() % 2 == 0) p.acceleration = 0 - p.acceleration;
   if (random() % 2 == 0) p.jerk = 0 - p.jerk;
   p.floor = static_cast<std::uint32_t>(random() >> 32 >> (random() % 32));
-  // A floor next to the rate: the comparison is decided in its lowest bits.
+  // A floor next to the rate: the lowest bits decide the comparison.
   if (random() % 4 == 0) p.floor = static_cast<std::uint32_t>((p.rate >> 32) + random() % 3 - 1);
   return p;
 }
 
-// `enable_of_1024`: how many of 1,024 clocks are enabled. `pieces` are scaled.
+// `enable_of_1024`: enabled clocks out of 1,024. `pieces` is scaled.
 void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
   const std::uint64_t seed = lockstep::seed_from_environment(enable_of_1024);
   std::mt19937_64 random(seed);
@@ -223,7 +223,7 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
   pieces = lockstep::scaled(pieces);
   for (std::uint64_t i = 0; i < pieces; ++i) {
     std::uint64_t distance = kSwapDistance + random() % 80;
-    // One piece in 16 lasts for about 50 updates, however rare the enables are.
+    // One piece in 16 lasts for about 50 updates, also with rare enables.
     if (random() % 16 == 0) distance += random() % (1 + 3'000'000 / enable_of_1024);
     if (random() % 5 == 0) bench.piece_at_rest(random_piece(random), random() % 40);
     if (random() % 5 == 0) bench.freeze_in(1 + random() % distance);

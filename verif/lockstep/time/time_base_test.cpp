@@ -22,7 +22,8 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : checker_("time_base", seed), dice_(seed) { reset(); }
 
-  // One clock: ratio, target and slew are the map's again, the clocks of an update counted anew.
+  // One clock of reset: ratio, target and slew have the values of the register map again, and the clocks of an update
+  // are counted from 0.
   void reset() {
     checker_.event("reset");
     dut_->rst_i = 1;
@@ -35,13 +36,13 @@ class Bench {
     compare();
   }
 
-  // The class of the piece in force from now on. A card without classes has one ratio, whatever comes.
+  // The class of the piece in force from now on. A card without classes has only one ratio.
   void piece(std::uint8_t piece_class) {
     checker_.event("class", piece_class);
     class_ = piece_class;
   }
 
-  // And its doublings of the slew.
+  // The number of doublings of the slew from now on.
   void shift_slew(unsigned doublings) {
     checker_.event("slew shift", doublings);
     slew_shift_ = static_cast<std::uint8_t>(doublings);
@@ -57,7 +58,7 @@ class Bench {
     dut_->left_i = static_cast<CData>(left);
     clock_dut(setting);
     model_.clock({hold, setting, kClasses ? class_ : std::uint8_t{card_map::constant::kClassFeed}, slew_shift_});
-    // STATUS and FAULT come through here: 22 bits.
+    // STATUS and FAULT pass through this slice: 22 bits.
     snapshot_.clock(dut_->snapshot_i, get(dut_->snapshot_i, bus::snapshot::kRest) != 0 ? left : ratio);
     compare();
   }
@@ -72,7 +73,7 @@ class Bench {
     for (std::uint64_t i = 0; i < clocks; ++i) clock(hold);
   }
 
-  // Every signal of every cycle was compared, and there were as many cycles as the scenario meant to run.
+  // Checks that every signal was compared in every cycle, and the number of cycles of the scenario.
   void expect_cycles(std::uint64_t cycles) const {
     EXPECT_EQ(checker_.cycles(), cycles);
     EXPECT_EQ(checker_.comparisons(), kComparedSignals * cycles + chained_);
@@ -84,7 +85,7 @@ class Bench {
  private:
   void clock_dut(const model::Setting& setting) {
     dut_->setting_i = wire(setting);
-    // 22 bits pass.
+    // Only 22 bits pass.
     dut_->snapshot_i = dice_.snapshot() & ~bus::in_place({22, 10}, ~std::uint64_t{0});
     dut_.clock();
   }
@@ -108,7 +109,8 @@ class Bench {
   std::uint64_t chained_ = 0;
 };
 
-// Ratios at and around 0, 1 and the goal, slews of one unit and of everything at once; hold and resume in between.
+// Ratios at and around 0, 1 and the goal, slews of one unit and of the whole range at once; hold and resume in
+// between.
 void directed() {
   Bench bench(0);
   std::uint64_t cycles = 1;
@@ -132,8 +134,8 @@ void directed() {
   bench.expect_cycles(cycles);
 }
 
-// Ratios that stand less than a 2^-16th above their goal do not take it for reached: one update with a slew that leads
-// there, some with none, then slowly to the goal below.
+// A ratio less than 2^-16 above its goal does not count as arrived: one update with a slew that leads there, some
+// with none, then slowly to the lower goal.
 void just_above_the_goal() {
   Bench bench(0);
   std::uint64_t cycles = 1;
@@ -155,7 +157,8 @@ void just_above_the_goal() {
   bench.expect_cycles(cycles);
 }
 
-// Each class's ratio in each clock of an update, with slews of many updates and of one; no class has the other's.
+// Each class's ratio in each clock of an update, with slews of many updates and of one; no class has the ratio of
+// another.
 void classes() {
   Bench bench(0);
   std::uint64_t cycles = 1;
@@ -175,7 +178,7 @@ void classes() {
         cycles += 96 + clock;
       }
     }
-    // The ratio of the class in force is set while it is.
+    // Sets the ratio of the class in force.
     bench.piece(card_map::constant::kClassRapid);
     set(reg::kRatioRapid, 3);
     set(reg::kRatioFixed, 0x10000);
@@ -188,7 +191,8 @@ void classes() {
   bench.expect_cycles(cycles);
 }
 
-// Each number of doublings in each clock of an update, up and down; from slews on that allow all, some or none of them.
+// Each number of doublings in each clock of an update, up and down, starting from slews that allow all, some or none
+// of them.
 void slew_shifts() {
   Bench bench(0);
   std::uint64_t cycles = 1;
@@ -226,11 +230,11 @@ void random_inputs() {
                 hold);
     else if (kind < 80)
       bench.set(reg::kSlew, static_cast<std::uint32_t>(dice.log_uniform(28)), hold);
-    else if (kind < 90)  // none, whatever lies on the bus
+    else if (kind < 90)  // no setting, with random bus contents
       bench.clock(hold, {false, dice.chance(4) ? reg::kSlew : ratios[dice.below(3)], dice.draw()});
-    else  // somebody else's
+    else  // a setting of another block
       bench.clock(hold, {true, dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.draw()});
-    // Mostly short: changes then fall on each of the four clocks of an update.
+    // Mostly short, so that changes come in each of the four clocks of an update.
     const std::uint64_t clocks = dice.below(dice.chance(8) ? 5000 : 40);
     bench.run(hold, clocks);
     cycles += clocks;

@@ -1,4 +1,4 @@
-// Lockstep of the under-run hold: commands arrive, pieces are decoded, begin and take ticks at any clock, with stop
+// Lockstep of the under-run hold: commands arrive; pieces are decoded, begin and take ticks at any clock; stop
 // distances and ratios of every size, cuts and resets; every output in every cycle.
 #include "trammel/model/underrun_guard.hpp"
 
@@ -14,9 +14,9 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr std::uint64_t kComparedSignals = 4;
-constexpr bool kProbing = TRAMMEL_PROBING != 0;  // else nothing is ever lost
-// What the rest of the card keeps to: clocks from a commit to the next command's count, from a swap to the next piece's
-// stop distance, from a swap to the next one.
+constexpr bool kProbing = TRAMMEL_PROBING != 0;  // otherwise nothing is ever lost
+// Minimum clocks that the rest of the card keeps: from a commit to the next command's count, from a swap to the next
+// piece's stop distance, from a swap to the next swap.
 constexpr unsigned kAfterCommit = 13;
 constexpr unsigned kAfterSwap = 14;
 constexpr unsigned kSwaps = 24;
@@ -44,7 +44,8 @@ class Bench {
       clock();
   }
 
-  // A piece that ends at rest, with nothing queued, is cut; the next one, which does not, begins `later` clocks after.
+  // A piece that ends at rest, with nothing queued, is cut. The next one, which does not end at rest, begins `later`
+  // clocks after it.
   void ending_piece_is_cut(unsigned later) {
     reset();
     in_ = {};
@@ -62,7 +63,7 @@ class Bench {
     in_ = {};
   }
 
-  // A reset where what is queued was lost; then a piece that waits for more.
+  // A reset after queued commands were lost; then a piece that waits for more.
   void reset_while_lost() {
     reset();
     in_ = {};
@@ -93,7 +94,7 @@ class Bench {
     in_.load = {};
   }
 
-  // Its stop distance is loaded; it begins from rest.
+  // Loads the stop distance of a piece, which then begins from rest.
   void begin_piece(std::uint32_t distance) {
     load_distance(distance);
     for (unsigned i = 0; i < 2; ++i) clock();
@@ -130,7 +131,7 @@ class Bench {
       in_.ratio = in_.ratio + step > 0x10000 ? 0x10000 : in_.ratio + step;
   }
 
-  // Halfword by halfword; now and then a command is dropped, by a refusal before its end.
+  // Commands arrive halfword by halfword; sometimes a refusal drops one before its end.
   void random_arrival() {
     in_.arrival = {};
     ++since_commit_;
@@ -162,7 +163,7 @@ class Bench {
     to_feed_ = kind > 4;
     std::uint64_t count = dice_.log_uniform(count_bits_);
     if (dice_.chance(20) && count_bits_ == 40) count = std::uint64_t{1} << 32;
-    // Around what makes them short.
+    // Close to the limit at which the queues are short.
     const std::uint64_t queued = (to_geometry_ ? paths_ : pieces_) - taken_;
     const std::uint64_t limit = card_map::constant::kUnderrunReserveTicks + dice_.below(4);
     if (near_ && queued < limit) count = limit - queued;
@@ -189,7 +190,8 @@ class Bench {
     return dice_.chance(zero_every_) ? 0 : static_cast<std::uint32_t>(dice_.log_uniform(distance_bits_));
   }
 
-  // A piece is loaded, decoded a few clocks later, and begins: at once where none gives ticks, else with a last tick.
+  // A piece is loaded, decoded a few clocks later, and begins: at once if no piece gives ticks, otherwise with a last
+  // tick.
   void random_piece() {
     ++since_swap_;
     in_.swap = swaps_;
@@ -207,7 +209,7 @@ class Bench {
       in_.decoded = dice_.chance(8);
     }
     taken_ += in_.take ? 1U : 0U;
-    // What is loaded for others, and what is no load.
+    // Loads for other blocks, and bus contents without a load.
     if (!in_.load.valid && dice_.chance(3)) {
       const auto target = static_cast<std::uint8_t>(dice_.below(8));
       in_.load = {target != model::feed_target::kStopDistance && dice_.chance(2), target,
@@ -256,7 +258,7 @@ class Bench {
     ends_ += held && !model_.outputs().hold && !in_.cut ? 1U : 0U;
     waits_ += model_.outputs().shown && !model_.outputs().hold ? 1U : 0U;
     if (!held && model_.outputs().hold) check_.event("hold begins");
-    // Nothing runs, or begins, behind a probe's halt.
+    // After a probe's halt nothing runs or begins.
     if (in_.lost) {
       check_.event("what is queued is lost");
       swaps_ = false;
@@ -300,18 +302,18 @@ class Bench {
   Simulated<Vdut> dut_;
   model::UnderrunGuard model_;
   Inputs in_;
-  std::vector<std::uint16_t> left_;  // halfwords to come, the next one last
+  std::vector<std::uint16_t> left_;  // halfwords still to come, the next one last
   bool committing_ = false;
   bool to_geometry_ = false;
   bool to_feed_ = false;
   unsigned since_commit_ = 0;
   unsigned since_swap_ = 0;
-  unsigned loaded_ = 0;  // halfwords of the next piece's stop distance
+  unsigned loaded_ = 0;  // halfwords of the next piece's stop distance that were loaded
   std::uint32_t distance_ = 0;
   bool swaps_ = false;
   bool ended_ = false;
   bool near_ = false;
-  std::uint64_t paths_ = 0;  // ticks that arrived, were taken
+  std::uint64_t paths_ = 0;  // ticks of paths that arrived
   std::uint64_t pieces_ = 0;
   std::uint64_t taken_ = 0;
   unsigned cut_every_ = 5000;
@@ -320,7 +322,7 @@ class Bench {
   unsigned distance_bits_ = 12;
   unsigned zero_every_ = 6;
   unsigned arrive_every_ = 20;
-  std::uint32_t underruns_ahead_ = 0;  // of the model, in the RTL
+  std::uint32_t underruns_ahead_ = 0;  // the RTL's count minus the model's
   std::uint64_t holds_ = 0;
   std::uint64_t ends_ = 0;
   std::uint64_t waits_ = 0;
@@ -338,7 +340,7 @@ void random_inputs() {
   EXPECT_EQ(bench.lost() > length / 3000, kProbing);
 }
 
-// Whatever the clock of a round in which the next piece begins, it is judged by itself.
+// The next piece is judged by itself, in whichever clock of a round it begins.
 void ending_pieces_are_cut() {
   Bench bench(1);
   for (unsigned later = 0; later < 32; ++later) bench.ending_piece_is_cut(later);
@@ -346,7 +348,7 @@ void ending_pieces_are_cut() {
   EXPECT_EQ(bench.holds(), 32U);
 }
 
-// The first round after a reset has counts like any other.
+// The first round after a reset judges its counts like any other.
 void reset_finds_what_is_lost() {
   Bench bench(1);
   bench.reset_while_lost();

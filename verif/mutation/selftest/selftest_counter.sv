@@ -1,4 +1,4 @@
-// For the test of scripts/mutate: what counts is compared, what is told apart from it never is.
+// For the test of scripts/mutate: the test compares count_o, and nothing compares unseen_q.
 `default_nettype none
 
 module selftest_counter (

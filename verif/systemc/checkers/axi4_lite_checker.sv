@@ -1,7 +1,7 @@
-// Rules of AXI4-Lite, and the card's own on top of them, at the pins: what the master and the card may do in each clock.
+// Rules of AXI4-Lite and further rules of the card, at the pins: what the master and the card may do in each clock.
 `default_nettype none
 module axi4_lite_checker #(
-    parameter int MaxClocks = 500  // clocks within which an access is answered
+    parameter int MaxClocks = 500  // clocks within which an access must be answered
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -25,7 +25,8 @@ module axi4_lite_checker #(
 );
   import "DPI-C" function void port_rule_broken(input string rule);
 
-  // Addresses, data and reads that were taken and are not answered yet, up to 3; clocks that the oldest has waited.
+  // Addresses, data and reads that were accepted but not answered yet, up to 3; clocks for which the oldest has
+  // waited.
   logic [1:0] addresses_q, data_q, reads_q;
   logic [9:0] write_wait_q, read_wait_q;
   always_ff @(posedge clk_i) begin
@@ -72,7 +73,7 @@ module axi4_lite_checker #(
   else port_rule_broken("AXI4-Lite: BVALID without a write");
   assert property (@(posedge clk_i) disable iff (rst_i) rvalid_i |-> reads_q != 0)
   else port_rule_broken("AXI4-Lite: RVALID without a read");
-  // OKAY or SLVERR: there is nothing to decode, and no exclusive access.
+  // OKAY or SLVERR: the port decodes no slave address and has no exclusive access.
   assert property (@(posedge clk_i) disable iff (rst_i) bvalid_i |-> !bresp_i[0])
   else port_rule_broken("AXI4-Lite: BRESP is neither OKAY nor SLVERR");
   assert property (@(posedge clk_i) disable iff (rst_i) rvalid_i |-> !rresp_i[0])

@@ -1,11 +1,11 @@
-// The checkers of a card's host ports, side by side: pins of card_with_ports in, broken rules out by port_rule_broken().
+// The checkers of a card's host ports: pins of card_with_ports in, broken rules out by port_rule_broken().
 `default_nettype none
 module port_checkers #(
     parameter int BreakBits = 20
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    // straps: Wishbone is pipelined; clocks of 8 bits of the serial line, 0: not known
+    // straps: Wishbone is pipelined; clocks per 8 bits of the serial line, 0: unknown
     input wire logic pipelined_i,
     input wire logic [19:0] period_i,
     // AXI4-Lite

@@ -1,4 +1,5 @@
-// One direction of a serial line, as the card's clock samples it: edges against the length of a bit, stop bits, breaks.
+// One direction of a serial line, sampled with the card's clock: checks edges against the bit length, stop bits,
+// breaks.
 `default_nettype none
 module serial_line_watch #(
     parameter int BreakBits = 20
@@ -6,12 +7,12 @@ module serial_line_watch #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic line_i,
-    input wire logic [19:0] period_i,  // clocks of 8 bits; 0: not known
-    output logic short_o,  // events: an edge two clocks or more too early after the one before
-    output logic no_stop_o,  // a byte without a stop bit that is no beginning of a break
-    output logic short_break_o  // longer low than any byte, and no break
+    input wire logic [19:0] period_i,  // clocks per 8 bits; 0: unknown
+    output logic short_o,  // event: an edge is two clocks or more too early after the previous one
+    output logic no_stop_o,  // event: a byte without a stop bit that does not begin a break
+    output logic short_break_o  // event: low for longer than any byte, but not a break
 );
-  // Since the last edge, and since the start bit's edge, in eighths of a clock: a bit is period_i of them.
+  // Time since the last edge, and since the start bit's edge, in eighths of a clock: a bit is period_i of them.
   logic [24:0] edge_q;
   logic [27:0] byte_q;
   logic line_q, inside_q, seen_high_q;

@@ -1,4 +1,4 @@
-// Rules of the card's SPI at the pins, as the card's clock samples them: SCK no faster than a quarter of it, MISO on time.
+// Rules of the card's SPI at the pins, sampled with the card's clock: SCK at most a quarter of it, MISO on time.
 `default_nettype none
 module spi_checker (
     input wire logic clk_i,
@@ -12,7 +12,7 @@ module spi_checker (
   assign {mosi, cs_n, sck} = master_i;
   assign {enable, miso} = card_i;
 
-  // Clocks since SCK rose and since CS turned, up to 7; bits of the byte.
+  // Clocks since SCK rose and since CS changed, up to 7; bits of the byte.
   logic [2:0] rose_q, turned_q, bit_q;
   logic sck_q, cs_q, miso_q;
   logic rise, turn, late;

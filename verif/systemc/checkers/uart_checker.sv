@@ -1,11 +1,11 @@
-// Rules of the card's serial line at the pins, as the card's clock samples them.
+// Rules of the card's serial line at the pins, sampled with the card's clock.
 `default_nettype none
 module uart_checker #(
     parameter int BreakBits = 20
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [19:0] period_i,  // clocks of 8 bits, as the host sends them; 0: not known
+    input wire logic [19:0] period_i,  // clocks per 8 bits, as the host sends them; 0: unknown
     input wire logic rx_i,
     input wire logic tx_i
 );
@@ -36,7 +36,7 @@ module uart_checker #(
       .short_break_o(tx_short_break)
   );
 
-  // A card that was reset is silent until a break has ended; clocks for which the line in has been low.
+  // After a reset the card is silent until a break has ended. low_q: clocks for which the input line has been low.
   logic [24:0] low_q;
   logic spoken_to_q;
   always_ff @(posedge clk_i) begin

@@ -1,7 +1,7 @@
 // Rules of Wishbone B4, classic or pipelined, at the pins: what the master and the card may do in each clock.
 `default_nettype none
 module wishbone_checker #(
-    parameter int MaxClocks = 500  // clocks within which an access is answered
+    parameter int MaxClocks = 500  // clocks within which an access must be answered
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -19,7 +19,7 @@ module wishbone_checker #(
   assign stalled = pipelined_i && asked && stall;
   assign unanswered = !pipelined_i && asked && !answer;
 
-  // What was asked and is not answered yet: a pipelined master gives it up with CYC, a classic one with STB too.
+  // Requests without an answer yet. A pipelined master withdraws them with CYC, a classic one also with STB.
   logic [1:0] open_q;
   logic [9:0] wait_q;
   always_ff @(posedge clk_i) begin

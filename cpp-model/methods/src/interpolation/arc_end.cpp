@@ -12,7 +12,7 @@ unsigned quadrant_changes(const Point& start, const Point& end, bool clockwise) 
   const int changes = (turn * (quadrant(end) - quadrant(start)) + 4) % 4;
   if (changes != 0) return static_cast<unsigned>(changes);
   if (start == end) return 4;
-  // In one quadrant: the cross product says which of the two comes first.
+  // Both in one quadrant: the sign of the cross product tells which one comes first.
   const Deviation cross = static_cast<Deviation>(start.x) * end.y - static_cast<Deviation>(start.y) * end.x;
   return turn * cross < 0 ? 4 : 0;
 }

@@ -7,7 +7,8 @@ namespace {
 
 std::int64_t magnitude(std::int64_t value) { return value < 0 ? -value : value; }
 
-// Of the circle through `p` about the origin; radii below 2^31 are exact enough in long double.
+// The radius of the circle through `p` about the origin, rounded up. Radii below 2^31 are exact enough in long
+// double.
 std::int64_t radius_rounded_up(const Point& p) {
   return static_cast<std::int64_t>(std::ceil(std::hypot(static_cast<long double>(p.x), static_cast<long double>(p.y))));
 }
@@ -39,8 +40,9 @@ Step DdaArc::next() {
     ++time_;
     return step;
   }
-  // The larger coordinate is at least modulus / 4 for radii from 6 on, so a step is a few iterations away; below that
-  // the modulus is at most 16. Only the centre itself would stand still, and a circle's walk does not come by there.
+  // For radii from 6 on the larger coordinate is at least modulus / 4, so a step is a few iterations away; for
+  // smaller radii the modulus is at most 16. Only at the centre itself there would be no step, and the walk of a
+  // circle does not pass there.
   while (step == Step{}) {
     ++time_;
     sum_x_ += magnitude(at_.y);

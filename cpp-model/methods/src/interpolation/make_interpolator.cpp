@@ -38,7 +38,7 @@ long double distance(const Point& p) {
 
 void check_circle(const Point& start, const Point& end) {
   if (start == Point{}) refuse("a circle of radius 0");
-  // The box first: the distance of such a point is surely above.
+  // Checks the box first, so that the distance below cannot be too large for its type.
   const bool inside = within(start.x, kMaxRadius) && within(start.y, kMaxRadius) && distance(start) <= kMaxRadius;
   if (!inside) refuse("a radius of more than 2^30 pulses");
   const long double apart = std::fabs(distance(end) - distance(start));
@@ -77,7 +77,7 @@ void check(const Arc& arc) {
   }
 }
 
-// Both products of pulse_train_line.hpp stay below 2^62, and no axis needs more than a pulse a clock.
+// Keeps both products of pulse_train_line.hpp below 2^62, and every axis at one pulse per clock or less.
 void check_velocity(const Line& line, const Options& options) {
   if (options.clock_hz == 0) refuse("a clock of 0 Hz");
   if (options.velocity == 0 || options.velocity_divisor == 0) refuse("a velocity of 0, or a divisor of 0");
@@ -94,7 +94,7 @@ void check_velocity(const Line& line, const Options& options) {
   refuse(std::string(info(method).name) + " cannot do " + what);
 }
 
-// Found by walking all of them: from some starts it then never comes back, or turns the wrong way.
+// Found by walking all such arcs: from some starts the walk never comes back, or turns the wrong way.
 const char* const kThroughCentre =
     "steer passes the centre at a radius or semi-axis of 1 pulse, where its table has no direction";
 

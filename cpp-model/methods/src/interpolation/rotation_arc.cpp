@@ -13,7 +13,7 @@ const Real kTurn = 2 * std::acos(static_cast<Real>(-1));
 
 std::int64_t fixed(Real value, int fraction) { return std::llround(std::ldexp(value, fraction)); }
 
-// What the plan of an arc takes from its geometry, from the centre.
+// The geometry of an arc, relative to its centre.
 struct Geometry {
   Real start_radius;
   Real end_radius;
@@ -35,18 +35,18 @@ struct Geometry {
     sweep = sign * (end_angle - start_angle);
     if (arc.is_full() || sweep < 0) sweep += kTurn;
   }
-  // Halves the distance that rounding put between the two.
+  // The mean, which halves the difference that rounding made between the two.
   Real radius() const { return (start_radius + end_radius) / 2; }
 };
 
-// From a point of radius `from` to the circle, along the radius. Clamped so that the phase, preset to one half plus
-// this, keeps an eighth of a pulse of room on either side.
+// The distance along the radius from a point of radius `from` to the circle. It is clamped so that the phase, preset
+// to one half plus this, keeps an eighth of a pulse of room on either side.
 Real phase_offset(Real from, Real radius) {
   constexpr Real kLimit = 0.375L;
   return std::clamp(radius - from, -kLimit, kLimit);
 }
 
-// On the chain of chords, `time` chords after a corner at angle `corner`.
+// A point on the chain of chords, `time` chords after a corner.
 struct ChordPoint {
   Real whole;
   Real part;
@@ -64,9 +64,9 @@ RotationArc::RotationArc(const Arc& circle)
   const Geometry arc(circle);
   const Real radius = arc.radius();
   const Real largest = std::max(arc.start_radius, arc.end_radius);
-  // Chords of at most 16 pulses, and so short that the sagitta stays under 1/32 pulse.
+  // Chords of at most 16 pulses, and so short that the sagitta stays below 1/32 pulse.
   while (std::ldexp(largest, -shift_) > std::min(std::sqrt(largest) / 2, Real{16})) ++shift_;
-  const Real chord = std::ldexp(Real{1}, -shift_);  // over the radius
+  const Real chord = std::ldexp(Real{1}, -shift_);  // relative to the radius
   const Real angle = 2 * std::asin(chord / 2);
   chord_bits_ = kSparse;
   while (std::ldexp(Real{1}, chord_bits_) < kDense * chord * largest) ++chord_bits_;
@@ -86,7 +86,7 @@ RotationArc::RotationArc(const Arc& circle)
   const Real from_y = std::sin(arc.start_angle) * start_offset;
   phase_x_ = fixed(0.5L + from_x, kPhase);
   phase_y_ = fixed(0.5L + from_y, kPhase);
-  // What the chords leave between their end and where the end's phase should be, spread over the ticks.
+  // The difference between the end of the chords and the end's phase, spread over the ticks.
   const Real chords = std::ldexp(static_cast<Real>(ticks_), -chord_bits_);
   const Real made_x = ChordPoint(chords).at(x_corner) - x_corner(0);
   const Real made_y = ChordPoint(chords - 0.5L).at(y_corner) - ChordPoint(-0.5L).at(y_corner);
@@ -108,7 +108,7 @@ std::int64_t RotationArc::turned(std::int64_t value) const {
 void RotationArc::rotate() {
   const std::uint64_t half = std::uint64_t{1} << (chord_bits_ - 1);
   if ((corner_ & half) != 0) {
-    // Y's chord ends halfway through X's, where X's next corner is already known.
+    // Y's chord ends halfway through X's chord, when X's next corner is already known.
     chord_y_ = sign_ * turned(x_ + chord_x_);
     y_ += chord_y_;
   } else {
@@ -122,7 +122,7 @@ void RotationArc::rotate() {
 
 void RotationArc::advance() {
   constexpr std::int64_t kOne = std::int64_t{1} << kPhase;
-  // A carry or a borrow leaves bits at and above the one's.
+  // A carry or a borrow leaves bits at kPhase and above.
   const auto carries = [&] { return (static_cast<std::uint64_t>(phase_x_ | phase_y_) >> kPhase) != 0; };
   pending_ = false;
   while (tick_ != ticks_ && !pending_) {

@@ -20,7 +20,7 @@ std::uint64_t magnitude(std::int64_t value) { return static_cast<std::uint64_t>(
 // The direct-mode registers of a line on a card of 4 axes, one block: FREQUENCY_LO[3] .. START.
 constexpr std::uint64_t kLineBlock = (card_map::reg::kStart - card_map::reg::frequency_lo(3)) / 4 + 1;
 
-// A command of two axes.
+// The length of a command of two axes, in words.
 constexpr std::uint64_t words_of(card_map::Opcode opcode) {
   return card_map::words(*card_map::find_command(static_cast<std::uint8_t>(opcode)), 0x3);
 }

@@ -15,8 +15,8 @@ void take(Spread& spread, double distance) {
   spread.mean += distance;
 }
 
-// One axis of a line: how far it is from the running point, at each event and at the whole time unit before it, when
-// it still stands where it stood.
+// The distance of one axis of a line from the running point: at each event, and at the whole time unit before it,
+// when the axis is still at its old position.
 class AxisError {
  public:
   explicit AxisError(double rate) : rate_(rate) {}
@@ -32,13 +32,13 @@ class AxisError {
   Spread spread() const { return {largest_, sum_}; }
 
  private:
-  double rate_;  // pulses a time unit
+  double rate_;  // pulses per time unit
   double at_ = 0;
   double largest_ = 0;
   double sum_ = 0;
 };
 
-// Two axes without a square root an event: what a million random lines are measured with. `scale` is 1 / total time.
+// Two axes, without a square root per event: the fast path for a million random lines. `scale` is 1 / total time.
 Distances plane_line(const Trace& trace, const IdealCurve& curve, double scale) {
   const double px = curve.displacement()[0];
   const double py = curve.displacement()[1];

@@ -9,7 +9,7 @@
 namespace trammel::measure {
 namespace {
 
-// Line: the deviations are linear in the intervals, so integers do, and one division at the end.
+// Lines: the deviations are linear in the intervals, so integers and one final division are enough.
 Evenness line_evenness(const Trace& trace, double pulses, std::size_t axis) {
   const std::vector<std::uint64_t>& times = trace.times(axis);
   if (times.size() < 2) return {};
@@ -33,13 +33,14 @@ Evenness line_evenness(const Trace& trace, double pulses, std::size_t axis) {
   return result;
 }
 
-// The speed of each axis between its pulses, pulses a time unit, and the time for which all moving axes have one.
+// The speed of each axis between its pulses, in pulses per time unit, and the period in which all moving axes have
+// one.
 class AxisSpeeds {
  public:
   explicit AxisSpeeds(const Trace& trace) : to_(trace.total_time()) {
     for (std::size_t a = 0; a < trace.axes(); ++a) {
       const std::vector<std::uint64_t>& times = trace.times(a);
-      // speeds_[a][k]: after the k-th pulse, until the next. The ends are never looked at.
+      // speeds_[a][k]: from the k-th pulse to the next one. The two ends are never used.
       speeds_[a].assign(times.size() + 1, 0);
       for (std::size_t k = 1; k < times.size(); ++k) speeds_[a][k] = 1 / as_double(times[k] - times[k - 1]);
       if (times.size() < 2) continue;
@@ -47,7 +48,7 @@ class AxisSpeeds {
       to_ = std::min(to_, times.back());
     }
   }
-  // Give the axis's pulses their directions, which a line does not need: its axes never turn round.
+  // Gives the axis's pulses their directions. Lines do not need this, because their axes never reverse.
   void turn(const Trace& trace, std::size_t axis) {
     int last = 0;
     std::size_t k = 0;
@@ -69,7 +70,7 @@ class AxisSpeeds {
   std::array<std::vector<double>, kTraceAxes> speeds_;
 };
 
-// Events from the one at `from` to the one before `to`: each begins a stretch of constant speed.
+// The events from the one at `from` to the one before `to`. Each begins a period of constant speed.
 struct Stretches {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -98,7 +99,7 @@ class RippleSum {
   double duration_ = 0;
 };
 
-// Two axes, no branch an event: what a million random lines are measured with.
+// Two axes, without a branch per event: the fast path for a million random lines.
 Ripple plane_line_ripple(const Trace& trace, const IdealCurve& curve, const AxisSpeeds& speeds) {
   const std::vector<Event>& events = trace.events();
   const Stretches stretches = stretches_of(events, speeds);

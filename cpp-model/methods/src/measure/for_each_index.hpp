@@ -1,5 +1,5 @@
-// Work on indices 0 .. count - 1 by several threads. Each result belongs in the slot of its index, so that nothing
-// depends on which thread took which.
+// Work on indices 0 .. count - 1 by several threads. Each result belongs to the slot of its index, so it does not
+// depend on the order of the threads.
 #pragma once
 
 #include <atomic>
@@ -13,8 +13,8 @@
 
 namespace trammel::measure {
 
-// `work` is called from the threads; the first exception is thrown again here, when all have stopped. `progress` is
-// called from the calling thread with the part done.
+// The threads call `work`. After all threads have ended, the first exception is thrown again here. The calling thread
+// calls `progress` with the fraction done.
 inline void for_each_index(std::uint64_t count, unsigned threads, const std::function<void(std::uint64_t)>& work,
                            const std::function<void(double)>& progress) {
   std::atomic<std::uint64_t> next{0};

@@ -8,7 +8,7 @@
 namespace trammel::measure {
 namespace {
 
-// Parts of the table of arc length: chords of 1/4,096 turn are short of their arc by 1e-7.
+// Parts of the table of arc length: a chord of 1/4,096 turn is shorter than its arc by 1e-7.
 constexpr std::size_t kParts = 4096;
 
 double square(double x) { return x * x; }
@@ -20,12 +20,13 @@ double distance_to_ellipse(double x, double y, double a, double b) {
   x = std::abs(x);
   y = std::abs(y);
   if (y == 0) {
-    // On the major axis: off the evolute's cusp the vertex is nearest, within it a point above.
+    // On the major axis: beyond the evolute's cusp the vertex is nearest, inside it a point above.
     if (a == b || x >= (a * a - b * b) / a) return std::abs(x - a);
     const double cosine = a * x / (a * a - b * b);
     return std::hypot(x - a * cosine, b * std::sqrt(1 - cosine * cosine));
   }
-  // The nearest point is (a^2 x / (t + a^2), b^2 y / (t + b^2)) with t the root of g, decreasing for t > -b^2.
+  // The nearest point is (a^2 x / (t + a^2), b^2 y / (t + b^2)), where t is the root of g, which decreases for t >
+  // -b^2.
   const auto g = [&](double t) { return square(a * x / (t + a * a)) + square(b * y / (t + b * b)) - 1; };
   double low = -b * b + b * y;
   double high = -b * b + std::hypot(a * x, b * y);

@@ -25,7 +25,7 @@ class Motor {
         inertia_(p_.rotor_inertia + p_.load_inertia),
         gain_(p_.inductance / p_.chopper_time) {}
 
-  // The currents whose field stands at an electrical angle.
+  // The currents whose field is at an electrical angle.
   Currents reference(double electrical_angle) const {
     const double amplitude = std::sqrt(2.0) * p_.rated_current;
     return {amplitude * std::cos(electrical_angle), amplitude * std::sin(electrical_angle)};
@@ -60,20 +60,21 @@ class Motor {
   Currents reference_{};
 };
 
-// Run again and again without a jump in position or speed. (An open arc has one in speed.)
+// True if the curve can be repeated without a jump in position or speed. (An open arc has a jump in speed.)
 bool repeatable(const IdealCurve& curve) { return curve.is_line() || curve.is_closed(); }
 
-// How often the curve is run: whole times, but for a curve of more than the most pulses, which is broken off.
+// The number of runs of the curve: a whole number, except that a curve of more than the maximum of pulses is cut
+// short.
 double repeats_of(const Trace& trace, const IdealCurve& curve, const MotorRun& run) {
   const auto pulses = static_cast<double>(pulses_of(trace));
-  // Of both ramps together, at the mean of pulses along the path.
+  // Pulses of both ramps together, with the mean number of pulses per length of path.
   const double ramps = run.speed * run.ramp_time * pulses / curve.length();
   const double most = static_cast<double>(run.max_pulses) + ramps;
   if (pulses > most) return most / pulses;
   return repeatable(curve) ? std::ceil((static_cast<double>(run.min_pulses) + ramps) / pulses) : 1;
 }
 
-// Where the running point is at which time: from rest on a ramp to a speed, and on a ramp to rest.
+// The running point over time: a ramp from rest to a speed, and a ramp back to rest.
 class RampedMotion {
  public:
   RampedMotion(double way, double speed, double ramp_time)
@@ -114,7 +115,7 @@ class RampedMotion {
 // One axis over all repeats of the curve.
 class AxisRun {
  public:
-  // Runs the curve `repeats` times, which need not be whole.
+  // Runs the curve `repeats` times; `repeats` need not be whole.
   AxisRun(const Trace& trace, const IdealCurve& curve, const MotorRun& run, std::size_t axis, double repeats)
       : trace_(trace),
         curve_(curve),
@@ -128,13 +129,13 @@ class AxisRun {
     const double at_speed = motion_.duration() - 2 * motion_.ramp();
     measured_from_ = motion_.ramp() + (repeats == 1 && !repeatable(curve) ? 0 : at_speed / 3);
     measured_to_ = motion_.ramp() + at_speed;
-    // Full-step positions have both phases on: the field stands at 45 degrees.
+    // At full-step positions both phases are on: the field is at 45 degrees.
     turn_field();
     const Currents currents = motor_.reference(field_angle() * run.motor.pole_pairs);
     state_ = {field_angle(), 0, currents[0], currents[1]};
   }
 
-  // False: steps were lost.
+  // Returns false if steps were lost.
   bool execute() {
     bool over = false;
     for (std::size_t repeat = 0; !over; ++repeat) {
@@ -171,13 +172,13 @@ class AxisRun {
   void turn_field() { motor_.set_reference(motor_.reference(field_angle() * run_.motor.pole_pairs)); }
   double lag() const { return (field_angle() - state_[0]) / radians_a_pulse_ * full_steps_a_pulse_; }
 
-  // The running point's speed, as the motor's, rad/s.
+  // The speed of the running point, converted to that of the motor, rad/s.
   double ideal_speed(double time) const {
     const double within = std::fmod(motion_.way_at(time), curve_.length()) / curve_.length();
     return curve_.tangent(within)[axis_] * motion_.speed_at(time) * radians_a_pulse_;
   }
 
-  // Integrates until `end`; false when the rotor has slipped by a whole electrical turn (4 full steps).
+  // Integrates until `end`; false if the rotor has slipped by a whole electrical turn (4 full steps).
   bool advance(double end) {
     const double span = end - time_;
     if (span <= 0) return true;

@@ -21,7 +21,7 @@ std::vector<std::vector<Vibration>> sweep_motors(const std::vector<Trace>& trace
   for_each_index(
       traces.size() * speeds.size(), threads,
       [&](std::uint64_t index) {
-        // Slow ones, which take the longest, first.
+        // Slow speeds first, because they take the longest.
         const std::size_t speed = index / traces.size();
         const std::size_t trace = index % traces.size();
         MotorRun at_speed = run;

@@ -10,11 +10,11 @@ namespace {
 
 using interpolation::Line;
 
-// Lines a block. Sums are made within blocks and then over blocks in order, so that rounding does not depend on which
-// thread took which.
+// Lines per block. Sums are made within blocks and then over blocks in order, so that rounding does not depend on the
+// threads.
 constexpr std::uint64_t kBlock = 512;
 
-// SplitMix64 (Steele, Lea & Flood, "Fast splittable pseudorandom number generators"): any index at once.
+// SplitMix64 (Steele, Lea & Flood, "Fast splittable pseudorandom number generators"): gives any index directly.
 std::uint64_t mixed(std::uint64_t value) {
   value += 0x9E3779B97F4A7C15U;
   value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9U;
@@ -127,7 +127,7 @@ Line random_line(const RandomLines& lines, std::uint64_t index) {
 std::vector<RandomMeasures> measure_random_lines(const RandomLines& lines,
                                                  const std::function<void(double)>& progress) {
   std::vector<RandomMeasures> total = empty_measures();
-  // What the longest line is refused for, no thread has to.
+  // If the longest line is refused, throw here, before the threads start.
   const Line longest = interpolation::make_line({0, 0}, {lines.largest, lines.largest});
   for (const RandomMeasures& measures : total) {
     interpolation::make_interpolator(measures.method, longest, lines.options);

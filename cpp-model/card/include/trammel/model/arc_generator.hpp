@@ -1,6 +1,7 @@
-// Golden model of the arc generator (docs/developer/architecture.md): a circle in chords. X and Y rotate in turns, half
-// a chord apart, and what each moves by is the increment of its axis's pulse generator for the chord's path ticks.
-// Judged by the distance to the true circle and by the end point. No errors are reported; not thread-safe.
+// Golden model of the arc generator (docs/developer/architecture.md): it makes a circle from chords. X and Y rotate
+// in turns, half a chord apart. The displacement of a coordinate becomes the increment of its axis's pulse generator
+// for the path ticks of the chord. The tests judge the distance to the true circle and the end point. No errors are
+// reported; not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +10,17 @@
 
 namespace trammel::model {
 
-// The rotation alone, without clocks. X and Y are in 2^(m-40) pulses: 2^-40 pulses a path tick, times the 2^m ticks of
-// a chord, so that a displacement is an increment.
+// The rotation alone, without clocks. The unit of X and Y is 2^(m-40) pulses: an increment counts 2^-40 pulses per
+// path tick and a chord lasts 2^m ticks. The displacement per chord is therefore the increment, without scaling.
 class ChordRotation {
  public:
   struct State {
-    std::int64_t x = 0;          // at whole chord times: X(0)
-    std::int64_t y = 0;          // at half chord times: Y(-1/2)
-    std::int64_t closing_x = 0;  // 2^-40 pulses a path tick, 48 bits
+    std::int64_t x = 0;          // X(0): sampled at whole chord times
+    std::int64_t y = 0;          // Y(-1/2): sampled at half chord times
+    std::int64_t closing_x = 0;  // added to every increment; 2^-40 pulses per path tick, 48 bits
     std::int64_t closing_y = 0;
-    std::uint8_t k = 1;  // a chord turns by 2 asin(2^-(k+1)); 0..31
-    std::uint8_t m = 5;  // 2^m path ticks a chord; below 5: no chord follows the first
+    std::uint8_t k = 1;  // a chord turns by the angle 2 asin(2^-(k+1)); 0..31
+    std::uint8_t m = 5;  // a chord lasts 2^m path ticks; below 5: no chord follows the first
     bool clockwise = false;
   };
 
@@ -30,8 +31,8 @@ class ChordRotation {
     return (value >> k) + (k == 0 ? 0 : value >> (k - 1) & 1);
   }
 
-  // The next chord of y, from X, or of x, from Y: moves the coordinate, and gives the axis's increment, the closing one
-  // in it. In turns, y first.
+  // chord_y() makes the next chord of y from X, chord_x() that of x from Y. Each moves its coordinate and returns the
+  // increment of the axis, which includes the closing increment. Callers alternate, chord_y() first.
   std::int64_t chord_y() { return move(state.y, state.clockwise ? -turn(state.x) : turn(state.x)) + state.closing_y; }
   std::int64_t chord_x() { return move(state.x, state.clockwise ? turn(state.y) : -turn(state.y)) + state.closing_x; }
 
@@ -44,40 +45,40 @@ class ChordRotation {
   }
 };
 
-// The block. A half chord under way in n clocks, kHalfChord or one more where k >= 16, gives its increment's halfwords
-// in the last three of them. It begins in the clock after the start or the last one's end, or after the swap that makes
-// its axis's shadow free.
+// The clocked block. A half chord takes kHalfChord clocks, or one more if k >= 16, and outputs the halfwords of its
+// increment in the last three of them. It begins in the clock after one of these: the start, the end of the previous
+// half chord, the swap that frees the axis's shadow register.
 class ArcGenerator {
  public:
   static constexpr unsigned kHalfChord = 8;
   static constexpr unsigned kMinChordBits = 5;
 
   struct Inputs {
-    bool clear = false;  // the arc is over, or cut; wins over everything in its clock
-    LoadWord load;       // STATE, CLOSING, SHIFTS, PLANE: only while loadable
-    bool start = false;  // the state is loaded
-    bool tick = false;   // path tick: at most one after a start until `ready`
+    bool clear = false;  // the arc is over or cut; wins over start and tick
+    LoadWord load;       // load bus; STATE, CLOSING, SHIFTS, PLANE only while `loadable`
+    bool start = false;  // event: the arc begins; its state is loaded
+    bool tick = false;   // path tick; between a start and `ready` at most one
   };
   struct Outputs {
-    std::uint16_t word = 0;  // means something with load
-    std::uint8_t load = 0;   // by axis: a halfword of its next increment
-    std::uint8_t swap = 0;   // by axis: takes it; a clock after the path tick that was the chord's last
-    bool ready = true;       // path ticks may come
+    std::uint16_t word = 0;  // valid while a bit of `load` is set
+    std::uint8_t load = 0;   // bit per axis: `word` is a halfword of the axis's next increment
+    std::uint8_t swap = 0;   // bit per axis: takes its next increment; one clock after the last path tick of the chord
+    bool ready = true;       // path ticks are accepted
     bool loadable = true;
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     ChordRotation path;
     std::uint8_t axis_x = 1;
     std::uint8_t axis_y = 1;
     bool under_way = false;
-    bool begun = false;   // the first chord is swapped in
-    bool in_x = false;    // which coordinate moves next, or now
+    bool begun = false;   // both axes have taken their first chord
+    bool in_x = false;    // the coordinate that rotates now or next is x
     bool full_x = false;  // the axis's shadow holds an increment that is not swapped in
     bool full_y = false;
-    unsigned left = 0;           // clocks of the half chord under way
-    std::int64_t increment = 0;  // its increment
-    std::uint64_t ticks = 0;     // since the start
+    unsigned left = 0;           // clocks left of the half chord under way
+    std::int64_t increment = 0;  // increment of the half chord under way
+    std::uint64_t ticks = 0;     // path ticks since the start
     Outputs out;
   };
 
@@ -127,7 +128,7 @@ class ArcGenerator {
     }
   }
 
-  // Two chains of `Bits` bits, one behind the other: x first.
+  // Two chains of `Bits` bits in series; the halfwords of x arrive first.
   template <unsigned Bits>
   static void join(std::int64_t& x, std::int64_t& y, std::uint16_t word) {
     const auto passed = static_cast<std::uint16_t>(y);
@@ -154,8 +155,8 @@ class ArcGenerator {
     state_.increment = state_.in_x ? state_.path.chord_x() : state_.path.chord_y();
   }
 
-  // After the first path tick both axes take their first chord, as soon as it is loaded; then y at odd multiples of
-  // half a chord, x at even ones.
+  // After the first path tick both axes take their first chord, as soon as both are loaded. After that y takes a
+  // chord at odd multiples of half a chord, x at even multiples.
   void swap(bool tick, bool both_are_full) {
     if (!state_.begun) {
       if (both_are_full && state_.ticks != 0) {

@@ -1,5 +1,5 @@
-// Golden model of the AXI4-Lite port, cycle-exact at every port: docs/developer/architecture.md.
-// One access at a time goes to the inner port; reads and writes that wait together take turns. Not thread-safe.
+// Golden model of the AXI4-Lite port, cycle-exact at every port: docs/developer/architecture.md. The inner port
+// receives one access at a time; reads and writes that wait together take turns. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -32,19 +32,19 @@ class Axi4LitePort {
     bool awready = false;
     bool wready = false;
     bool bvalid = false;
-    std::uint8_t bresp = kOkay;  // holds from answer to answer
+    std::uint8_t bresp = kOkay;  // holds until the next write response
     bool arready = false;
     bool rvalid = false;
-    std::uint32_t rdata = 0;  // as bresp
+    std::uint32_t rdata = 0;  // holds until the next read response
     std::uint8_t rresp = kOkay;
-    // to the inner port; the others mean something with `request`
+    // to the inner port; the other fields are valid with `request`
     bool request = false;
     bool write = false;
     bool partial = false;
     std::uint32_t address = 0;
     std::uint32_t data = 0;
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     bool busy = false;
     Outputs out;

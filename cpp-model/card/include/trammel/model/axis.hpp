@@ -1,7 +1,8 @@
-// Golden model of an axis: pulse generator and the path engines' steps merged by one register, then the step shaper,
-// with the axis's own settings. Not thread-safe. Units, ranges and rules: see the two parts.
+// Golden model of an axis. A register merges the steps of the pulse generator with those of the path engines and
+// feeds the step shaper; the axis keeps its own settings. Not thread-safe. Units, ranges and rules: see
+// PulseGenerator and StepShaper.
 //
-// A tick at c that makes a step: path_step at c+4, at the shaper then.
+// A tick in clock c that makes a step shows as path_step in c+4; the shaper receives the step in that clock.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +21,15 @@ class Axis {
     bool cut = false;
     bool tick = false;  // path domain
     bool swap = false;
-    bool active = false;       // sampled with swap
-    bool direct = false;       // sampled with swap: the count ends the axis, backwards mirrors forwards
+    bool active = false;       // sampled with swap: the axis takes part in the path
+    bool direct = false;       // sampled with swap: the count ends the move, and backward mirrors forward
     bool silent = false;       // steps are dropped
-    bool engine_step = false;  // from a path engine; never together with a step of the generator
+    bool engine_step = false;  // from a path engine; never in the clock of a step of the pulse generator
     bool engine_dir = false;   // 1 = negative
     bool wait_tick = false;
-    LoadWord load;  // INCREMENT and COUNT of this axis are its own
-    // An arc's next chord: a halfword of its increment, never beside one on the load bus for this axis, and the swap
-    // that keeps the phase.
+    LoadWord load;  // load bus; the axis takes its own INCREMENT and COUNT
+    // The next chord of an arc. chord_load shifts in a halfword of its increment, never in a clock in which the load
+    // bus addresses this axis. chord_swap takes the increment and keeps the phase.
     bool chord_load = false;
     bool chord_swap = false;
     std::uint16_t chord_word = 0;
@@ -36,15 +37,15 @@ class Axis {
   };
   struct Outputs {
     bool path_step = false;  // a step on its way to the shaper
-    bool path_dir = false;   // of the last one
-    bool live = false;       // direct: the count is not made
+    bool path_dir = false;   // direction of the last step, 1 = negative
+    bool live = false;       // direct mode: the axis has not made all pulses of its count
     StepShaper::Outputs shaper;
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     PulseGenerator generator;
     StepShaper shaper;
-    StepShaper::Inputs times;  // the axis's settings alone
+    StepShaper::Inputs times;  // only the settings of the axis; the other fields keep their defaults
     bool path_step = false;
     bool path_dir = false;
   };

@@ -1,5 +1,5 @@
-// What travels between the card's blocks (docs/developer/architecture.md, Buses): settings, and halfwords on their way
-// into chains, lowest halfword first. Plain data.
+// Plain data on the buses between the card's blocks (docs/developer/architecture.md, Buses): settings, and halfwords
+// on their way into shift chains, lowest halfword first.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace trammel::model {
 
-// The setting bus: a value that was checked, for whoever owns the address.
+// The setting bus: a checked register write, sent to all blocks. The block that owns the address takes it.
 struct Setting {
   bool set = false;
   std::uint32_t address = 0;  // bytes
@@ -24,7 +24,7 @@ struct LoadWord {
   bool to(unsigned chain) const { return valid && target == chain; }
 };
 
-// The roles of the card's inputs: filtered active levels. A bit of a mask is an axis.
+// The roles of the card's inputs, as filtered active levels. Bit n of a mask belongs to axis n.
 struct InputRoles {
   std::uint8_t limit_minus = 0;
   std::uint8_t limit_plus = 0;
@@ -38,9 +38,9 @@ struct InputRoles {
 // Causes of a stop that come from the machine's inputs.
 struct StopCauses {
   bool limit = false;        // event: a step into an active limit
-  bool beyond = false;       // event, with limit: the axis has no overtravel left
+  bool beyond = false;       // event, only together with limit: the axis has no overtravel left
   bool drive_fault = false;  // level
-  bool probe = false;        // event: outside probing
+  bool probe = false;        // event: the probe trips outside probing
   bool tool_setter = false;  // event
 
   bool any() const { return limit || drive_fault || probe || tool_setter; }
@@ -50,10 +50,10 @@ struct StopCauses {
 namespace load_target {
 inline constexpr unsigned kChainsOfAUnit = 16;
 constexpr unsigned increment(unsigned axis) { return axis * kChainsOfAUnit; }
-constexpr unsigned count(unsigned axis) { return axis * kChainsOfAUnit + 1; }  // in direct mode
+constexpr unsigned count(unsigned axis) { return axis * kChainsOfAUnit + 1; }  // direct mode only
 inline constexpr unsigned kTicks = 8 * kChainsOfAUnit;
 inline constexpr unsigned kPrescale = 9 * kChainsOfAUnit;
-// The deviation accumulator's.
+// Chains of the deviation accumulator.
 inline constexpr unsigned kDeviation = card_map::load_unit::kAccumulator * kChainsOfAUnit;
 inline constexpr unsigned kGradientX = kDeviation + 1;
 inline constexpr unsigned kGradientY = kDeviation + 2;
@@ -63,13 +63,13 @@ inline constexpr unsigned kEndX = kDeviation + 5;
 inline constexpr unsigned kEndY = kDeviation + 6;
 inline constexpr unsigned kQuadrants = kDeviation + 7;
 inline constexpr unsigned kPlane = kDeviation + 8;
-// The arc generator's.
+// Chains of the arc generator.
 inline constexpr unsigned kChordShifts = card_map::load_unit::kArcGenerator * kChainsOfAUnit;
-inline constexpr unsigned kChordState = kChordShifts + 1;    // X, then Y
-inline constexpr unsigned kChordClosing = kChordShifts + 2;  // of x, then of y
+inline constexpr unsigned kChordState = kChordShifts + 1;    // x, then y
+inline constexpr unsigned kChordClosing = kChordShifts + 2;  // closing increments: x, then y
 inline constexpr unsigned kChordPlane = kChordShifts + 8;
 inline constexpr unsigned kCommand =
-    card_map::load_unit::kPathCommands * kChainsOfAUnit;  // fields of commands that are no paths
+    card_map::load_unit::kPathCommands * kChainsOfAUnit;  // fields of commands that are not paths
 inline constexpr unsigned kNowhere = card_map::load_unit::kNone * kChainsOfAUnit + 15;
 }  // namespace load_target
 
@@ -84,7 +84,7 @@ inline constexpr unsigned kJerk = 5;
 inline constexpr unsigned kNowhere = 6;
 }  // namespace feed_target
 
-// A chain of `Bits` bits (a multiple of 16, at most 64) takes a halfword at its top.
+// Shifts a halfword in at the top of a chain of `Bits` bits (a multiple of 16, at most 64).
 template <unsigned Bits>
 void shift_in(std::uint64_t& chain, std::uint16_t word) {
   chain = chain >> 16 | std::uint64_t{word} << (Bits - 16);

@@ -1,5 +1,5 @@
-// Golden model of the buttons: feed hold holds the path, from the clock after its level on, until cycle start is
-// pressed while feed hold is not. Not thread-safe; no errors are reported.
+// Golden model of the buttons. The hold begins in the clock after feed hold becomes active. It ends when cycle start
+// is pressed while feed hold is not active. Not thread-safe; no errors are reported.
 #pragma once
 
 #include "trammel/model/buses.hpp"
@@ -9,9 +9,9 @@ namespace trammel::model {
 class ButtonHold {
  public:
   using Inputs = InputRoles;
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
-    bool cycle_start = true;  // its last level: a press is an edge
+    bool cycle_start = true;  // level in the last clock; a press is a rising edge
     bool hold = false;
   };
 

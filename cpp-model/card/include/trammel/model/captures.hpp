@@ -1,7 +1,8 @@
-// Golden model of the capture units, rtl/io/captures.sv: a unit asks for its snapshot at the first raw change of its
-// input after quiet; the filter's passing makes a capture of it, quiet takes it back. A capture stays with its unit, or
-// is handed on to the queue. Everything that comes in clock c shows at c + 1, but for asks(), which is of the clock
-// itself. Not thread-safe; no errors are reported.
+// Golden model of the capture units, rtl/io/captures.sv. A unit asks for its snapshot at the first raw change of its
+// input after quiet. When the filter passes the change, the snapshot becomes a capture; when the input becomes quiet
+// at its old level, the unit withdraws the request. A capture stays with its unit or goes to the queue. Every input
+// of clock c takes effect at c + 1, except in asks(), which belongs to clock c itself. Not thread-safe; no errors are
+// reported.
 #pragma once
 
 #include <array>
@@ -20,24 +21,25 @@ class Captures {
     std::uint32_t raw = 0;
     std::uint32_t levels = 0;
     std::uint32_t quiet = 0;
-    std::uint8_t captured = 0;  // events, a bit for each unit: the snapshot it asks for is in its area
-    std::uint8_t queued = 0;    // events, likewise: the capture that it hands on is in the queue,
-    bool full = false;          // or lost
+    std::uint8_t captured = 0;  // events, a bit per unit: the snapshot that the unit asked for is in its area
+    std::uint8_t queued = 0;    // events, a bit per unit: the queue has taken the unit's capture
+    bool full = false;          // with queued: the queue was full and the capture is lost
     Setting setting;
   };
-  // Searching: for quiet at the level before the edge. Touched: an edge has come.
+  // Searching: waits until the input is quiet at a level whose edge counts. Ready: waits for that edge. Touched: the
+  // edge came.
   enum class Mode : std::uint8_t { Off, Searching, Ready, Touched };
   struct Unit {
     std::uint32_t select = 0;  // as CAPTURE_SELECT was written
     Mode mode = Mode::Off;
-    bool before = false;     // the level before the edge
-    bool confirmed = false;  // of the edge: its filter has passed
-    bool taken = false;      // its snapshot is in the area
-    bool lost = false;       // it came while a capture stood
+    bool before = false;     // level before the edge
+    bool confirmed = false;  // the filter has passed the edge
+    bool taken = false;      // the snapshot of the edge is in the area
+    bool lost = false;       // the edge came while an older capture was still valid
     bool valid = false;
     bool overrun = false;
-    bool active = false;  // the level that the captured edge led to
-    // Of units with a queue: the level of the input a clock ago, where it was watched then.
+    bool active = false;  // level to which the captured edge led
+    // Only units with a queue: whether the unit watched its input in the last clock, and the filtered level then.
     bool watched = false;
     bool level = false;
     bool operator==(const Unit& o) const {
@@ -46,7 +48,7 @@ class Captures {
              watched == o.watched && level == o.level;
     }
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::array<Unit, kUnits> units{};
     std::uint16_t snapshots = 0;
@@ -61,14 +63,14 @@ class Captures {
     for (unsigned n = 0; n < units_; ++n) clock_unit(state_.units[n], n, in);
   }
 
-  // The units that want a snapshot in this clock.
+  // The units that ask for a snapshot in this clock, a bit per unit.
   std::uint8_t asks(const Inputs& in) const {
     unsigned mask = 0;
     for (unsigned n = 0; n < units_; ++n) mask |= unit_asks(state_.units[n], n, in) ? 1U << n : 0U;
     return static_cast<std::uint8_t>(mask);
   }
 
-  // The units that hand on a capture, and the level that its edge led to.
+  // A bit per unit. passed(): the unit hands on a capture; edges(): its edge leads to the active level.
   std::uint8_t passed() const {
     unsigned mask = 0;
     for (unsigned n = 0; n < units_; ++n) mask |= hands_on(state_.units[n]) ? 1U << n : 0U;
@@ -80,7 +82,7 @@ class Captures {
     return static_cast<std::uint8_t>(mask);
   }
 
-  // CAPTURE_STATE, as the register reads.
+  // The value of register CAPTURE_STATE.
   std::uint32_t word() const {
     namespace field = card_map::field;
     std::uint32_t word = std::uint32_t{state_.snapshots} << field::kCaptureStateSnapshotsShift;
@@ -94,7 +96,7 @@ class Captures {
     return word;
   }
 
-  // The next clock() changes nothing, however often it comes.
+  // True if clocks with these inputs change nothing, however many pass.
   bool rests(const Inputs& in) const {
     Captures after = *this;
     after.clock(in);
@@ -109,7 +111,7 @@ class Captures {
   State& state() { return state_; }
 
  private:
-  // What a unit sees of its input.
+  // The unit's input: raw level, filtered level, quiet.
   struct Seen {
     bool raw, level, quiet;
   };
@@ -123,17 +125,18 @@ class Captures {
   }
   static bool queues(const Unit& u) { return (u.select & card_map::field::kCaptureSelectQueue) != 0; }
   static bool hands_on(const Unit& u) { return queues(u) && u.mode == Mode::Touched && u.confirmed && u.taken; }
-  // The input is quiet at a level that the unit's edges come from.
+  // The input is quiet at a level from which an edge counts for this unit.
   static bool counts(const Unit& u, const Seen& seen) {
     const std::uint32_t edges =
         seen.level ? card_map::field::kCaptureSelectToInactive : card_map::field::kCaptureSelectToActive;
     return seen.quiet && (u.select & edges) != 0;
   }
-  // A touch was a glitch: the input is quiet again.
+  // The touch was a glitch: the input is quiet again at its old level.
   static bool withdrawn(const Unit& u, const Seen& seen) {
     return u.mode == Mode::Touched && !u.confirmed && seen.quiet && seen.level == u.before;
   }
-  // The level that a change now would be one from, where one counts; else the raw level itself, which is none.
+  // The level from which a raw change would be an edge. If no edge counts now: the raw level, so that nothing is an
+  // edge.
   static bool level_before(const Unit& u, const Seen& seen) {
     if (u.mode == Mode::Ready || withdrawn(u, seen)) return u.before;
     return u.mode == Mode::Searching && counts(u, seen) ? seen.level : seen.raw;
@@ -142,7 +145,7 @@ class Captures {
     const Seen seen = seen_by(u, in);
     if (selected(in, n)) return false;
     const bool still_asked = u.mode == Mode::Touched && !u.lost && !u.taken;
-    // What is still asked for is taken back for a clock before it is asked for anew.
+    // A request that is pending is withdrawn for one clock before the unit makes a new one.
     if (seen.raw != level_before(u, seen)) return !u.valid && !(withdrawn(u, seen) && still_asked);
     return still_asked && !withdrawn(u, seen);
   }
@@ -180,7 +183,7 @@ class Captures {
       u.mode = (u.select & edges) != 0 ? Mode::Searching : Mode::Off;
     }
   }
-  // The filter passes, and it was not the touch under way that it waited for.
+  // The filter passes an edge that the unit did not wait for: it was missed.
   static bool missed(const Unit& u, const Seen& seen) {
     if (!queues(u) || u.mode == Mode::Off || !u.watched || seen.level == u.level) return false;
     const std::uint32_t edge =

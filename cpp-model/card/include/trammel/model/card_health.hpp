@@ -1,5 +1,5 @@
-// Golden model of what tells an emergency-stop chain that the card is healthy: a level, and a square wave for a charge
-// pump. What comes in clock c shows at c + 1. Not thread-safe; no errors are reported.
+// Golden model of the health outputs, which tell an emergency-stop chain that the card is healthy: a level, and a
+// square wave for a charge pump. Inputs of clock c take effect at c + 1. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class CardHealth {
     std::uint32_t fault = 0;
     bool fed = false;  // the watchdog runs
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint32_t causes = 0;  // HEALTH_CAUSES
     std::uint32_t half = 0;    // CHARGE_PUMP: clocks from one edge to the next; 0: no wave
@@ -43,7 +43,7 @@ class CardHealth {
   State& state() { return state_; }
   bool healthy() const { return state_.healthy; }
   bool pump() const { return state_.pump; }
-  // So many clocks with these inputs change nothing but `count`.
+  // The number of clocks for which these inputs change nothing but `count`.
   std::uint64_t quiet_clocks(const Inputs& in) const {
     if (in.setting.set || healthy_with(in) != state_.healthy) return 0;
     if (!state_.healthy || state_.half == 0) return state_.pump || state_.count != 0 ? 0 : kForever;

@@ -1,5 +1,5 @@
-// Golden model of the card's inputs, rtl/io/card_inputs.sv: synchroniser and polarity; with the engine machine_inputs
-// also filters and roles. An input whose filter has no length goes past it. Not thread-safe; no errors are reported.
+// Golden model of the card's inputs, rtl/io/card_inputs.sv: synchroniser and polarity. The engine machine_inputs adds
+// filters and roles. An input whose filter length is 0 bypasses its filter. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace trammel::model {
 class CardInputs {
  public:
   using Inputs = InputPins::Inputs;
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     InputPins pins;
     InputFilter filter;
@@ -44,13 +44,14 @@ class CardInputs {
   std::uint32_t levels() const {
     return (state_.filter.levels() & state_.filters) | (state_.pins.level() & ~state_.filters);
   }
-  // With captures: those that stand at their levels for a filter's length; all that have no filter.
+  // Of cards with captures: the inputs that have kept their levels for the length of their filter, and all without
+  // filter.
   std::uint32_t quiet() const { return (state_.filter.quiet() | ~state_.filters) & state_.pins.present(); }
   const InputRoles& roles() const { return state_.roles.roles(); }
   const State& state() const { return state_; }
   State& state() { return state_; }
   bool has_machine_inputs() const { return machine_inputs_; }
-  // What the parts see.
+  // The inputs of the parts.
   InputFilter::Inputs filter_inputs(const Setting& setting) const {
     const bool set = in_array(setting, card_map::reg::input_filter(0), InputFilter::kInputs);
     const unsigned input = (setting.address - card_map::reg::input_filter(0)) / 4;

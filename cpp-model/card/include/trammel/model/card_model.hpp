@@ -1,6 +1,6 @@
-// Golden model of the whole card: the core behind an AXI4-Lite port, cycle by cycle the same at every pin.
+// Golden model of the whole card: the core behind an AXI4-Lite port. It equals the RTL at every pin in every clock.
 //
-// clock() is one rising edge. Not thread-safe; no errors are reported beside the constructor's.
+// clock() is one rising edge. Not thread-safe; only the constructor reports errors.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ class CardModel {
   using Config = CardConfig;
   using Outputs = CoreModel::Outputs;
 
-  // Pins of the AXI4-Lite port, as the card has them; see Axi4LitePort.
+  // Pins of the AXI4-Lite port, named as on the card; see Axi4LitePort.
   struct Inputs {
-    bool rst = false;  // registered: beyond the port it takes effect a clock later
+    bool rst = false;  // resets the port at once, the core one clock later (registered)
     bool awvalid = false;
     bool wvalid = false;
     bool bready = false;
@@ -34,7 +34,7 @@ class CardModel {
   // Throws std::invalid_argument for numbers out of range.
   explicit CardModel(const Config& config) : state_{CoreModel(config)} {}
 
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     CoreModel core;
     Axi4LitePort port{};
@@ -76,7 +76,8 @@ void CardModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   core.emergency_stop = in.emergency_stop;
   const CoreModel::Answer answer = state_.core.answer();
   clock_part(state_.core, core);
-  if (reset_now || in.rst) return state_.port.reset();  // the port also takes the pin
+  if (reset_now || in.rst)
+    return state_.port.reset();  // the pin itself resets the port, and so does its registered copy
   Axi4LitePort::Inputs bus;
   bus.awvalid = in.awvalid;
   bus.awaddr = in.awaddr;

@@ -1,5 +1,5 @@
-// How a joined block clocks its parts: each of them in every clock. clock_parts() takes another way of doing so, which
-// must leave the state that this one leaves, and returns false where no output of the part changed. Plain data.
+// The default way to clock the parts of a composed block: every part in every clock. clock_parts() accepts another
+// way, which must leave the same state and returns false if no output of the part changed. Plain data.
 #pragma once
 
 namespace trammel::model {

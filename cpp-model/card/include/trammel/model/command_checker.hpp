@@ -1,5 +1,5 @@
-// Golden model of the command checker: judges stream words against the layouts of trammel/card_map.hpp and passes good
-// commands on in their stored form. Cycle exact. Not thread-safe; no allocation.
+// Golden model of the command checker: checks stream words against the layouts of trammel/card_map.hpp and passes
+// valid commands on in their stored form. Cycle-exact. Not thread-safe; does not allocate.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ class CommandChecker {
     bool reset = false;
     bool write = false;  // a word; ignored unless ready
     std::uint32_t word = 0;
-    bool flush = false;   // refuses a partial command; waits for a word under way, comes before one beside it
-    bool clear = false;   // opens the stream; the next number is 0; wins over all else
-    bool closed = false;  // a fault stands: a word written now is refused as FAULTED and changes nothing
+    bool flush = false;   // refuses an incomplete command; acts after a word under way, before one of its own clock
+    bool clear = false;   // opens the stream; the next number is 0; wins over all other inputs
+    bool closed = false;  // a fault is set: a word written now is refused as FAULTED and changes nothing
     std::uint16_t geometry_room = 0;  // halfwords, as the queue shows it
     std::uint16_t feed_room = 0;
   };
@@ -33,30 +33,31 @@ class CommandChecker {
     bool drop = false;
     bool refuse = false;
     std::uint8_t reason = 0;  // card_map::Reason; holds between refusals
-    std::uint8_t number = 0;  // in the last header
-    bool partial = false;     // inside a command
+    std::uint8_t number = 0;  // number in the last header
+    bool partial = false;     // a command is incomplete
   };
   static constexpr std::size_t kMaxHalfwords = 64;
 
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     bool open = true;
-    card_map::Reason unread = card_map::Reason::None;  // why the word under way is refused whatever it is
+    card_map::Reason unread = card_map::Reason::None;  // why the word under way is refused unread
     bool flush_waits = false;
     int age = 0;                // clocks since the write of the word under way
-    std::uint8_t expected = 0;  // number
+    std::uint8_t expected = 0;  // number that the next header must have
     const card_map::Command* command = nullptr;
     card_map::Reason header_verdict = card_map::Reason::None;
-    std::size_t received = 0;  // halfwords of the command, with the word under way
+    std::size_t received = 0;  // halfwords of the command so far, including the word under way
     std::array<std::uint16_t, kMaxHalfwords> halfwords{};
     Outputs outputs;
   };
 
-  // Clocks from a word's write until `ready` is back, and from one that is refused unread: as FAULTED, STREAM_CLOSED.
+  // Clocks from the write of a word until `ready` is set again. The second value is for words that are refused unread
+  // (FAULTED, STREAM_CLOSED).
   static constexpr int kAnswerClocks = 6;
   static constexpr int kClosedAnswerClocks = 2;
 
-  // axes: 1 .. 8; throws std::invalid_argument otherwise. engines: the card's mask of them.
+  // axes: 1 .. 8, otherwise std::invalid_argument is thrown. engines: the mask of the card's engines.
   CommandChecker(unsigned axes, std::uint32_t engines);
 
   // One rising edge.
@@ -65,7 +66,7 @@ class CommandChecker {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // Of the command that is committed: a path or a barrier, and so one that the sequencer counts.
+  // True if a command is committed that the sequencer counts: a path or a barrier.
   bool counts_in_geometry() const {
     using card_map::Opcode;
     const Opcode opcode = state_.command->opcode;

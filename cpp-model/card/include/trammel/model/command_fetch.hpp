@@ -1,11 +1,13 @@
 // Golden model of the command fetch and its decoder: reads one command ahead from a queue and puts its halfwords on a
-// load bus. Where each halfword goes follows from the layouts of the card map.
+// load bus. The layouts of the card map define the target of each halfword.
 //
-// A halfword asked for in clock r lies on the queue's output in r+2 and on the bus in r+3. A command is decoded in the
-// clock in which its last halfword is on the bus. An engine's halfwords after the prescaler wait until it is
-// free, a line's increments until the axes' shadows are; a feed piece's acceleration and jerk until it has begun, where
-// a piece runs as they would be asked for: it is decoded without them. Not thread-safe; no errors are reported: the
-// checker lets only good commands into the queue.
+// A halfword requested in clock r is at the queue's output in r+2 and on the bus in r+3. A command is decoded in the
+// clock in which its last halfword is on the bus.
+//
+// The halfwords of an engine's path after the prescaler wait until the engine is free. The increments of a line wait
+// until the axes' shadow registers are free. The acceleration and jerk of a feed piece wait until the piece has
+// begun, if another piece is under way when they would be requested; the piece is then decoded without them. Not
+// thread-safe; no errors are reported, because the checker admits only valid commands to the queue.
 #pragma once
 
 #include <array>
@@ -21,26 +23,26 @@ class CommandFetch {
   enum class Queue { Geometry, Feed };
   struct Inputs {
     bool clear = false;
-    bool pop = false;            // the decoded command has begun (a barrier: is over)
-    bool payload_ready = true;   // the engine may be loaded; no piece is under way
+    bool pop = false;            // the decoded command has begun (a barrier: has ended)
+    bool payload_ready = true;   // geometry: the engine may be loaded; feed: no piece is under way
     bool shadows_free = true;    // the axes' increments may be loaded
-    bool empty = true;           // of the queue
-    std::uint16_t halfword = 0;  // what was asked for two clocks ago
+    bool empty = true;           // the queue is empty
+    std::uint16_t halfword = 0;  // the halfword requested two clocks ago
   };
   enum class Mode { Idle, Reading, Waiting, Decoded, Finishing };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     Mode mode = Mode::Idle;
-    int asked = -1;  // index of the halfword asked for, -1: none
+    int asked = -1;  // index of the halfword requested now, -1: none
     std::array<int, 2> arriving = {-1, -1};
     int length = 0;            // halfwords of the command
-    int pause_at = 0;          // the halfword before which it may have to wait
+    int pause_at = 0;          // index of the halfword before which the fetch may have to wait
     bool split = false;        // the piece is decoded without acceleration and jerk
-    bool header_here = false;  // what arrives is of this command, not the rest of the one before
+    bool header_here = false;  // the header of this command has arrived, not only the rest of the previous one
     card_map::Opcode opcode = card_map::Opcode::End;
     std::uint8_t engine = card_map::engine::kLines;
     std::uint8_t mask = 0;
-    std::array<std::uint8_t, 8> axes = {};  // of the mask, lowest first; an arc's in chords: x, y, the further ones
+    std::array<std::uint8_t, 8> axes = {};  // axes of the mask, lowest first; arc in chords: x, y, then the others
     LoadWord bus;
   };
 
@@ -51,12 +53,12 @@ class CommandFetch {
 
   const State& state() const { return state_; }
   State& state() { return state_; }
-  bool read() const { return state_.asked >= 0; }  // asks the queue for a halfword
+  bool read() const { return state_.asked >= 0; }  // requests a halfword from the queue
   bool idle() const { return state_.mode == Mode::Idle; }
   bool decoded() const { return state_.mode == Mode::Decoded; }
   const LoadWord& bus() const { return state_.bus; }
 
-  // Of the command decoded.
+  // Of the decoded command.
   card_map::Opcode opcode() const { return state_.opcode; }
   bool is_line() const { return state_.opcode == card_map::Opcode::Line; }
   bool is_path() const { return is_line() || state_.opcode == card_map::Opcode::Arc || is_chord(); }
@@ -71,9 +73,9 @@ class CommandFetch {
   bool is_probe_end() const { return state_.opcode == card_map::Opcode::ProbeEnd; }
   bool is_instant() const { return is_output() || is_mark() || is_pwm() || is_probe(); }  // neither path nor barrier
   bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
-  std::uint8_t engine() const { return state_.engine; }  // what a path runs on, by its card_map::engine
+  std::uint8_t engine() const { return state_.engine; }  // the engine of a path, as card_map::engine
   std::uint8_t mask() const { return state_.mask; }
-  std::uint8_t flags() const { return state_.mask; }  // in place of the mask: a piece's class and silence
+  std::uint8_t flags() const { return state_.mask; }  // class and silence of a piece, which has them in place of a mask
 
   bool waiting() const { return state_.mode == Mode::Waiting; }
 

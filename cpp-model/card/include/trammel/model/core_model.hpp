@@ -1,7 +1,7 @@
 // Golden model of the card's core: everything between the inner register port and the pins, cycle by cycle.
 //
-// clock() is one rising edge. Steps are reported as they appear: at the pins in the cycle of their leading edge, on the
-// path before the shapers. Not thread-safe; no errors are reported beside the constructor's.
+// clock() is one rising edge. It reports steps as they appear: a step at the pins in the cycle of its leading edge, a
+// step of the path before it enters the shaper. Not thread-safe; only the constructor reports errors.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ struct CardConfig {
   unsigned geometry_depth = 4096;  // halfwords
   unsigned feed_depth = 2560;
   std::uint32_t clock_hz = 1'000'000;
-  std::uint32_t engines = RegisterFile::kDefaultEngines;  // what is built in
+  std::uint32_t engines = RegisterFile::kDefaultEngines;  // mask of the engines that are built in
   unsigned ports = 1;                                     // 1 .. 4
-  unsigned inputs = 4;                                    // 1 .. 32, of a card with path commands
+  unsigned inputs = 4;                                    // 1 .. 32; only for cards with path commands
   unsigned outputs = 4;
-  unsigned captures = 4;             // 1 .. 4 units, of a card with captures
+  unsigned captures = 4;             // 1 .. 4 units; only for cards with captures
   std::uint16_t output_idle = 0;     // strap: levels of the outputs in reset
   std::uint32_t idle_level = 0;      // strap: {second pins, first pins}, `axes` bits each
   bool emergency_stop_level = true;  // strap: the level at its pin that means stop
@@ -42,7 +42,7 @@ class CoreModel {
 
   // The inner register port.
   struct Inputs {
-    bool rst = false;  // registered: it takes effect a clock later
+    bool rst = false;  // registered: takes effect one clock later
     bool request = false;
     bool write = false;
     bool partial = false;
@@ -59,17 +59,17 @@ class CoreModel {
     bool error = false;
     std::uint32_t data = 0;
   };
-  // Pins, and what the core shows of itself beside the port (observe_o; positions: position()).
+  // The pins, and the signals that the core shows in addition to the port (observe_o; positions: position()).
   struct Outputs {
-    std::uint32_t step = 0;  // pins, by axis
+    std::uint32_t step = 0;  // pins, a bit per axis
     std::uint32_t dir = 0;
     std::uint32_t output = 0;  // outputs of the card
     bool irq = false;
-    bool tick = false;  // feed domain, as path_swap
+    bool tick = false;  // event in the feed domain: a tick was taken
     bool path_tick = false;
-    bool path_swap = false;
+    bool path_swap = false;  // event in the feed domain: a path begins
     bool feed_swap = false;
-    std::uint32_t path_step = 0;  // by axis
+    std::uint32_t path_step = 0;  // a bit per axis
     std::uint32_t path_dir = 0;
     std::uint32_t geometry_room = 0;
     std::uint32_t feed_room = 0;
@@ -85,7 +85,7 @@ class CoreModel {
   // Throws std::invalid_argument for numbers out of range.
   explicit CoreModel(const Config& config);
 
-  // All that the next clock() depends on beside its inputs, and the record of steps.
+  // All that the next clock() depends on besides its inputs, and the record of steps.
   struct State {
     RegisterFile registers;
     CommandChecker checker;
@@ -101,7 +101,8 @@ class CoreModel {
     StepRecord record{};
     Answer answer{};
     Outputs out{};
-    RegisterFile::Inputs shown{};  // to the register file; requests and what else is of one clock only within it
+    RegisterFile::Inputs
+        shown{};  // inputs of the register file; requests and other one-clock fields are set only during their clock
   };
 
   // One rising edge.
@@ -111,13 +112,13 @@ class CoreModel {
 
   const State& state() const { return state_; }
   State& state() { return state_; }
-  // What the parts see.
+  // The inputs of the parts.
   MotionCore::Inputs motion_inputs() const;
   CardInputs::Inputs pin_inputs(std::uint32_t pins) const { return {pins, state_.registers.outputs().setting}; }
   EmergencyStop::Inputs emergency_inputs(bool pin) const;
   QueueWatermarks::Inputs watermark_inputs() const;
   Captures::Inputs capture_inputs() const;
-  // Takes the parts' outputs over into the core's.
+  // Copies the outputs of the parts to the outputs of the core.
   void show();
 
   const Answer& answer() const { return state_.answer; }
@@ -126,7 +127,7 @@ class CoreModel {
   const Config& config() const { return config_; }
   std::uint64_t cycles() const { return state_.cycles; }
   bool has_emergency_stop() const { return card_map::has_engine(config_.engines, card_map::engine::kEmergencyStop); }
-  // Levels of the outputs, without pulses; at their pins.
+  // output_levels(): levels of the outputs without PWM pulses; output_pins(): levels at their pins.
   std::uint16_t output_levels() const { return state_.motion.output_levels(state_.emergency_stop.latched()); }
   std::uint16_t output_pins() const { return state_.motion.output_pins(state_.emergency_stop.latched()); }
   void set_steps(CardSteps* steps) { state_.record.set_steps(steps); }  // nullptr: none; not owned
@@ -154,7 +155,8 @@ class CoreModel {
   State state_;
 };
 
-// The queues take the checker's outputs as they stood before the edge, the checker the queues' rooms.
+// The queues see the checker's outputs from before the edge, and the checker sees the queues' rooms from before the
+// edge.
 template <class ClockPart>
 void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   const bool reset_now = state_.reset_due;

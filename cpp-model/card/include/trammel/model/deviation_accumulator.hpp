@@ -1,8 +1,9 @@
-// Golden model of the deviation accumulator (docs/developer/architecture.md): conics and lines by steps chosen from the
-// deviation F. In 4 directions: Goldberg & Goldberg, "XY Interpolation Algorithms", Table 2; the text's sense of
-// direction is the reverse of its tables, which hold: D = 0 turns counter-clockwise with x right and y up. In 8
-// directions: the least deviation among a step in x, one in y, and both at once (docs/decisions/0003).
-// Judged by the papers' vectors and by distances to the true curve. No errors are reported; not thread-safe.
+// Golden model of the deviation accumulator (docs/developer/architecture.md): makes conics and lines in steps that
+// the deviation F chooses. In 4 directions: Goldberg & Goldberg, "XY Interpolation Algorithms", Table 2. The text and
+// the tables of that paper contradict each other about the sense of direction; the tables are right: D = 0 turns
+// counter-clockwise with x right and y up. In 8 directions: the step with the least deviation among a step in x, one
+// in y, and both at once (docs/decisions/0003). The tests judge it by the papers' vectors and by distances to the
+// true curve. No errors are reported; not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +13,14 @@
 
 namespace trammel::model {
 
-// The path alone: which step comes next, without clocks. Units: pulses; F and gradients in the host's scale.
+// The path alone, without clocks: chooses the next step. Units: pulses; F and gradients in the host's scale.
 class DeviationPath {
  public:
   using Word = uint128;
 
-  // What a path starts with, at the card's widths: F, GX, GY 80 bits signed; halves 48 bits.
+  // The state of a path, with the card's widths: F, GX, GY 80 bits signed; halves 48 bits.
   struct State {
-    Word deviation = 0;        // F * 2^48: with the sign in bit 127, wrapping at 80 bits comes by itself
+    Word deviation = 0;        // F * 2^48: the sign is bit 127, so sums wrap at 80 bits as in the card
     Word gradient_x = 0;       // GX * 2^48
     Word gradient_y = 0;       // GY * 2^48
     std::uint64_t half_x = 0;  // CX/2
@@ -29,11 +30,11 @@ class DeviationPath {
     std::uint16_t quadrants = 0;  // quadrant changes left
     bool clockwise = false;
     bool eight_directions = false;
-    bool finishing = false;  // the end is in sight
+    bool finishing = false;  // a coordinate of the end is reached: only the displacement left decides
   };
   struct Step {
     bool in_x = false;
-    bool in_y = false;  // in 8 directions beside in_x or alone, in 4 where not in_x
+    bool in_y = false;  // in 8 directions with in_x or alone; in 4 directions only if not in_x
     bool negative_x = false;
     bool negative_y = false;
   };
@@ -41,10 +42,10 @@ class DeviationPath {
 
   State state;
 
-  // Begins at `state`; the end is not yet in sight.
+  // Begins a path at `state`, which must be loaded.
   void begin() { state.finishing = false; }
 
-  // No quadrants left and no displacement.
+  // True at the end: no quadrant changes and no displacement are left.
   bool at_end() const { return state.quadrants == 0 && state.left_x == 0 && state.left_y == 0; }
 
   // Makes the next step; not to be called at the end.
@@ -62,7 +63,7 @@ class DeviationPath {
  private:
   static bool top(Word word) { return (word >> 127) != 0; }
 
-  // True when a step of this sign does not bring the coordinate nearer to the end's.
+  // True if a step of this sign does not bring the coordinate nearer to its end.
   static bool reached(std::uint32_t left, bool negative) {
     const auto signed_left = static_cast<std::int32_t>(left);
     return negative ? signed_left >= 0 : signed_left <= 0;
@@ -83,7 +84,7 @@ class DeviationPath {
     } else if (state.eight_directions) {
       choose_least(next);
     } else {
-      // On or outside the curve the axis that moves towards its zero steps, inside it the other one.
+      // On or outside the curve the axis that moves towards its zero steps; inside the curve the other axis steps.
       const bool x_moves_outward = next.negative_x == top(state.gradient_x);
       const bool inside = top(state.deviation);
       next.in_x = x_moves_outward == inside;
@@ -92,8 +93,9 @@ class DeviationPath {
     return next;
   }
 
-  // One axis moves towards its zero, the other away from it; F changes by Ui (mostly negative), Uo (positive) or both.
-  // So F + Ui < F + Ui + Uo < F + Uo: which of two neighbours is nearer to 0 says the sign of their sum.
+  // One axis moves towards its zero and changes F by Ui (mostly negative); the other moves away from its zero and
+  // changes F by Uo (positive). So F + Ui < F + Ui + Uo < F + Uo. Of two neighbours in this order, the sign of their
+  // sum tells which one is nearer to 0.
   void choose_least(Step& next) const {
     const bool x_inward = next.negative_x != top(state.gradient_x);
     const Word by_x = change(next.negative_x, state.half_x, state.gradient_x);
@@ -128,34 +130,35 @@ class DeviationAccumulator {
  public:
   struct Inputs {
     bool rst = false;
-    LoadWord load;       // load bus; targets DEVIATION to PLANE are its own
-    bool start = false;  // state is loaded: all nine chains, the last halfword before this clock; only at rest
-    bool tick = false;   // path tick, while ready
+    LoadWord load;       // load bus; the accumulator owns the targets DEVIATION to PLANE
+    bool start = false;  // event, only at rest: all nine chains are loaded, the last halfword before this clock
+    bool tick = false;   // path tick, only while ready
     bool clear = false;
   };
   struct Outputs {
-    bool step_x = false;  // one clock a step; in 8 directions both at once too
+    bool step_x = false;  // high for one clock per step; in 8 directions both can be high together
     bool dir_x = false;   // 1 = negative; holds between steps
     bool step_y = false;
     bool dir_y = false;
     bool ready = false;
     bool at_end = false;  // valid with ready
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     DeviationPath path;
     DeviationPath::Step next;
     Outputs out;
-    bool emit = false;  // a step goes out at the next edge
+    bool emit = false;  // a step appears at the outputs after the next edge
     unsigned wait = 0;  // clocks until ready
   };
-  // A tick at c gives its step at c + kStepLatency and ready again at c + kTickPeriod; a start, ready at c +
-  // kStartLatency. In 8 directions the candidates of the next step are compared before that.
+  // A tick in clock c gives its step at c + kStepLatency and `ready` at c + kTickPeriod. A start in clock c gives
+  // `ready` at c + kStartLatency. In 8 directions `ready` comes kCompareClocks later, because the candidates of the
+  // next step are compared first.
   static constexpr unsigned kStepLatency = 2;
   static constexpr unsigned kTickPeriod = 9;
   static constexpr unsigned kStartLatency = 2;
   static constexpr unsigned kCompareClocks = 8;
-  // The last clocks before ready in which a load may be asked for: it comes when the block is at rest.
+  // In this many last clocks before `ready` a load may be requested: it arrives when the block is at rest.
   static constexpr unsigned kAskClocks = 4;
 
   // One rising edge.
@@ -196,7 +199,7 @@ class DeviationAccumulator {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // In a step or before the first one, and no load may be asked for yet.
+  // True during a step or before the first one, as long as no load may be requested.
   bool stepping() const { return state_.wait > kAskClocks; }
 
   static bool is_own(const LoadWord& load) {

@@ -1,9 +1,10 @@
-// Golden model of the direct loader: what START does with the direct-mode registers.
+// Golden model of the direct loader: checks the direct-mode registers at START and loads them.
 //
-// START at c: mask and the card's state are looked at as in c+7; where one is wrong the answer (done) comes at c+17.
-// Else 17 clocks for each masked axis and 1 for each other of the 8, 8 for the length, 8 until the answer: at c+33+16m
-// for m masked axes. A fault is looked at once more in the clock before the answer, so that no move can begin when it
-// is cleared. A halfword taken in clock c is on `load` in c+2. Not thread-safe.
+// START in clock c: the loader checks the mask, and the state of the card as of c+7. If one of them forbids the move,
+// the answer (done) comes at c+17. Otherwise the loader takes 17 clocks for each axis in the mask, 1 for each other
+// one of the 8 axes, 8 for the length and 8 until the answer, which comes at c+33+16m for m axes. It checks for a
+// fault again in the clock before the answer, so that no move is left that would begin when the fault is cleared. A
+// halfword taken in clock c is on `load` in c+2. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +18,23 @@ class DirectLoader {
  public:
   struct Inputs {
     bool reset = false;
-    bool busy = false;    // anything runs, is decoded or queued
-    bool closed = false;  // a fault stands
+    bool busy = false;    // something runs, is decoded or queued
+    bool closed = false;  // a fault is set
     bool start = false;
-    std::uint8_t mask = 0;   // stands until done
-    std::uint32_t data = 0;  // of the address of two clocks ago
+    std::uint8_t mask = 0;   // stable until done
+    std::uint32_t data = 0;  // value at the address of two clocks ago
   };
   struct Outputs {
     std::uint16_t address = 0;  // words, 10 bits
     bool done = false;
-    bool error = false;  // means something with done
+    bool error = false;  // valid with done
     std::uint8_t reason = 0;
     LoadWord load;
-    bool go = false;  // with done: the chains are loaded, the move begins
+    bool go = false;  // with done: the chains are loaded and the move begins
     std::uint8_t mask = 0;
   };
   enum class Phase { Idle, Check, Axis, Length, Decide };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     Phase phase = Phase::Idle;
     int step = 0;

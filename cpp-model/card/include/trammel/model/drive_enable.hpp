@@ -1,7 +1,8 @@
-// Golden model of the drives' enable and their brake: one sequence for the axes that ENABLE_AXES names. Motion that
-// waits at the gate, or the host's order, begins it; each of its stages lasts a delay and a clock. Ready drives stay so
-// until the card has rested for ENABLE_IDLE, the order ends or a fault bars them; then the way back follows. The
-// emergency stop disables at once. What comes in clock c shows at c + 1. Not thread-safe; no errors are reported.
+// Golden model of the drives' enable and their brake: one sequence for all axes that ENABLE_AXES names. Motion that
+// waits at the gate, or the host's order, starts the sequence; each stage lasts its delay plus one clock. The drives
+// stay ready until the card has been at rest for ENABLE_IDLE, the order ends, or a fault forbids them; then the
+// reverse sequence follows. The emergency stop disables at once. Inputs of clock c take effect at c + 1. Not
+// thread-safe; no errors are reported.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@ namespace trammel::model {
 
 class DriveEnable {
  public:
-  // Clocks of a unit of the delays, and of ENABLE_IDLE.
+  // Units are powers of 2 clocks: 2^kDelayBits for the delays, 2^kIdleBits for ENABLE_IDLE.
   static constexpr unsigned kDelayBits = 12;
   static constexpr unsigned kIdleBits = 20;
   static constexpr std::uint64_t kForever = ~std::uint64_t{0};
@@ -27,12 +28,12 @@ class DriveEnable {
     std::uint32_t fault = 0;
   };
   enum class Stage : std::uint8_t { Off, Torque, Settle, Ready, Last, Brake };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     Stage stage = Stage::Off;
-    std::uint64_t left = 0;  // clocks of the stage behind the present one; of Ready: until the drives are released
+    std::uint64_t left = 0;  // clocks left of the stage after this one; in Ready: of the idle time
     std::uint8_t named = 0;  // ENABLE_AXES
-    std::uint8_t axes = 0;   // in force
+    std::uint8_t axes = 0;   // axes that the sequence controls; taken from ENABLE_AXES at rest
     bool on = false;
     bool manual = false;
     std::uint32_t enable_delay = 0;
@@ -43,7 +44,7 @@ class DriveEnable {
     std::uint32_t causes = 0;
   };
 
-  // `delay_bits`, `idle_bits`: of the units; tests take fewer.
+  // `delay_bits`, `idle_bits`: exponents of the units; tests use smaller ones.
   explicit DriveEnable(unsigned axes = card_map::kMaxAxes, unsigned delay_bits = kDelayBits,
                        unsigned idle_bits = kIdleBits)
       : present_(static_cast<std::uint8_t>((1U << axes) - 1)), delay_bits_(delay_bits), idle_bits_(idle_bits) {}
@@ -61,13 +62,13 @@ class DriveEnable {
   bool released() const {
     return state_.stage == Stage::Settle || state_.stage == Stage::Ready || state_.stage == Stage::Last;
   }
-  // No tick is taken.
+  // True while no tick may be taken.
   bool waits() const { return state_.axes != 0 && state_.stage != Stage::Ready; }
   // The axes whose drives are disabled in this clock.
   std::uint8_t disables(const Inputs& in) const {
     return enabled() && next_state(in).stage == Stage::Off ? state_.axes : std::uint8_t{0};
   }
-  // So many clocks with these inputs change nothing but `left`.
+  // The number of clocks for which these inputs change nothing but `left`.
   std::uint64_t quiet_clocks(const Inputs& in) const {
     const State next = next_state(in);
     if (in.setting.set || next.stage != state_.stage || next.axes != state_.axes) return 0;
@@ -90,7 +91,7 @@ class DriveEnable {
     const bool idle_over = state_.idle != 0 && state_.left == 0;
     return rests(in) && (barred(in) || state_.axes == 0 || (!state_.on && (state_.manual || idle_over)));
   }
-  // A stage's clocks run.
+  // The timer of the stage runs.
   bool counts(const Inputs& in) const {
     return state_.left != 0 && state_.stage != Stage::Off && (state_.stage != Stage::Ready || rests(in));
   }

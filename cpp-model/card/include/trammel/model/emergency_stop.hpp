@@ -1,7 +1,7 @@
-// Golden model of the emergency stop's pin, clock by clock: a latch that the pin's level sets and that only a clear
-// resets, once the latch has become the cause of a stop and the pin is seen inactive. In the RTL the latch needs no
-// clock, so that it also sees what comes and goes between two: that is a test of its own.
-// Not thread-safe; no errors are reported.
+// Golden model of the emergency stop's pin, clock by clock. The pin's level sets a latch. Only a clear resets the
+// latch, and only after the latch has become the cause of a stop and the pin is seen inactive. In the RTL the latch
+// needs no clock, so it also catches a pulse between two clock edges; that has a test of its own. Not thread-safe; no
+// errors are reported.
 #pragma once
 
 namespace trammel::model {
@@ -12,11 +12,11 @@ class EmergencyStop {
     bool pin = false;
     bool clear = false;  // event: a one was written to FAULT.emergency_stop
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     bool latched = false;
-    bool pin_last = false;  // level of the pin a clock ago,
-    bool pin_seen = false;  // and two
+    bool pin_last = false;  // level of the pin one clock ago
+    bool pin_seen = false;  // level of the pin two clocks ago
     bool latch_last = false;
     bool latch_seen = false;
     bool operator==(const State& o) const {
@@ -39,9 +39,9 @@ class EmergencyStop {
   const State& state() const { return state_; }
   State& state() { return state_; }
   bool latched() const { return state_.latched; }
-  // The cause of a stop, with a clear in this clock or without.
+  // True if the cause of a stop is active; `clear`: a clear comes in this clock.
   bool stops(bool clear) const { return state_.latch_seen && !clears(clear); }
-  // With these inputs nothing changes, however many clocks pass.
+  // True if clocks with these inputs change nothing, however many pass.
   bool rests(const Inputs& in) const { return next(in) == state_; }
 
  private:

@@ -1,16 +1,18 @@
 // Golden model of the feed generator: rate, acceleration and jerk of one profile piece, and the phase whose carry is
 // the tick.
 //
-// With the rate r, acceleration a and jerk j of a piece, all in 2^-64 ticks an enabled clock (a and j an update),
-// enabled clocks 32k..32k+31 after its swap add clamp(R_k) to the phase, where
+// A piece has the rate r, acceleration a and jerk j, in units of 2^-64 ticks per enabled clock (a and j: per update).
+// Enabled clocks 32k..32k+31 after its swap add clamp(R_k) to the phase, where
 //   R_k = r + k * a + k * (k - 1) / 2 * j
-// and clamp() keeps it between the floor and 1 - 2^-48; R_0 is taken as it is. The first R_k outside -2 .. 2 (ticks a
-// clock) is that of all that follow in the piece: it stays at the floor, or at 1. The phase has 48 bits and goes on
-// from piece to piece. A piece of k updates thus covers 32 * (k * r + k(k-1)/2 * a + k(k-1)(k-2)/6 * j) ticks: the host
-// sends forward differences, centred on the update (r = v + a/2 for a constant acceleration a an update).
-// Frozen, the slope in use stays.
-// Acceleration and jerk come after the swap and have no shadow: they are added first at the 32nd enabled clock.
-// Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
+// clamp() limits R_k to the range from the floor to 1 - 2^-48; R_0 is not limited. The first R_k outside -2 .. 2
+// ticks per clock stays in force for the rest of the piece: the slope stays at the floor, or at 1. The phase has 48
+// bits and continues from piece to piece. A piece of k updates therefore covers
+//   32 * (k * r + k(k-1)/2 * a + k(k-1)(k-2)/6 * j)
+// ticks. The host sends forward differences, centred on the update (r = v + a/2 for a constant acceleration of a per
+// update).
+// A freeze keeps the slope in use.
+// Acceleration and jerk come after the swap and have no shadow register: they are first added at the 32nd enabled
+// clock. Not thread-safe; no errors are reported: the caller must keep the inputs within their ranges.
 #pragma once
 
 #include <array>
@@ -23,39 +25,39 @@ namespace trammel::model {
 
 class FeedGenerator {
  public:
-  static constexpr std::uint64_t kOne = std::uint64_t{1} << 48;  // a tick, of phase and slope
+  static constexpr std::uint64_t kOne = std::uint64_t{1} << 48;  // 1 tick, in the unit of phase and slope
 
   struct Inputs {
-    bool clear = false;   // phase and the ticks in flight become 0; wins over an enable in the same clock
+    bool clear = false;   // clears the phase and the ticks in flight; wins over an enable in the same clock
     bool enable = false;  // one accumulation
-    bool freeze = false;  // the slope stays, until the next swap at least
+    bool freeze = false;  // keeps the slope, at least until the next swap
     LoadWord load;      // feed load: rate (4 halfwords) and floor (2) before the swap, acceleration and jerk (4) after
-    bool swap = false;  // the next piece's rate and floor are taken; no load in this clock or the 2 after it
+    bool swap = false;  // takes rate and floor of the next piece; no load in this clock and the 2 after it
   };
   struct Outputs {
     bool tick = false;
-    std::uint32_t rate = 0;  // slope in use, 2^-32 ticks an enabled clock
+    std::uint32_t rate = 0;  // slope in use, 2^-32 ticks per enabled clock
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint64_t next_rate = 0;
     std::uint64_t next_floor = 0;  // 2^-32
     uint128 rate = 0;              // 2^-64
     uint128 acceleration = 0;
     uint128 jerk = 0;
-    std::uint64_t floor_rate = 0;  // as the rate, 2^-64
+    std::uint64_t floor_rate = 0;  // 2^-64, as the rate
     std::uint64_t slope = 0;       // 2^-48, below 1
     std::uint64_t phase = 0;       // 2^-48, below 1
     std::uint32_t count = 0;       // enabled clocks of this update
     bool away = false;             // the rate lies outside -2 .. 2
     bool frozen = false;
-    bool constant = true;  // the slope stays to the end of the piece
+    bool constant = true;  // the slope cannot change before the end of the piece
     std::array<Outputs, 2> in_flight{};
     Outputs outputs;
   };
 
   static constexpr std::uint32_t kUpdateClocks = 32;
-  // An enable at clock c shows its tick at c + kLatency, a swap at c its rate at c + kLatency.
+  // Clocks from an enable to its tick, and from a swap to its rate at the outputs.
   static constexpr std::uint32_t kLatency = 3;
 
   // One rising edge.
@@ -74,7 +76,7 @@ class FeedGenerator {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // The update behind the last enabled clock of 32: of the state alone.
+  // The update after the last of 32 enabled clocks. It depends only on the state.
   void update() {
     if (!state_.away) {
       state_.rate += state_.acceleration;
@@ -92,7 +94,7 @@ class FeedGenerator {
   }
 
  private:
-  // Within +-8: 4 bits above the point, the uppermost of them the sign.
+  // The rate is within +-8: 4 bits above the binary point, of which the uppermost is the sign.
   static std::uint64_t clamped(uint128 rate, std::uint64_t floor_rate) {
     const auto whole = static_cast<std::uint64_t>(rate >> 64) & 0xF;
     const auto fraction = static_cast<std::uint64_t>(rate);

@@ -1,5 +1,5 @@
-// Golden model of the queue: halfwords that become readable once their whole command is committed.
-// Cycle exact. Not thread-safe; the only allocation is the constructor's.
+// Golden model of the queue: halfwords become readable when their whole command is committed. Cycle-exact. Not
+// thread-safe; only the constructor allocates.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,16 @@ class HalfwordQueue {
     bool clear = false;
     bool write = false;  // only while there is room
     std::uint16_t word = 0;
-    bool commit = false;  // makes what was written in earlier clocks readable
-    bool drop = false;    // forgets what is not committed; wins over write and commit
+    bool commit = false;  // makes the halfwords of earlier clocks readable
+    bool drop = false;    // discards the halfwords that are not committed; wins over write and commit
     bool read = false;    // ignored while empty
   };
   struct Outputs {
-    std::uint16_t word = 0;  // two clocks after its read; without meaning before the first read
-    bool empty = true;       // counts a read one clock later, a commit two clocks later
-    std::uint16_t room = 0;  // free halfwords; two clocks after what changed it, one after a reset or clear
+    std::uint16_t word = 0;  // two clocks after its read; undefined before the first read
+    bool empty = true;       // includes a read one clock later, a commit two clocks later
+    std::uint16_t room = 0;  // free halfwords; two clocks after each change, one clock after a reset or clear
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::vector<std::uint16_t> memory;
     std::size_t read = 0;       // index of the oldest committed halfword

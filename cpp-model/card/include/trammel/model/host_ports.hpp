@@ -1,5 +1,5 @@
-// Golden model of a card's host ports, any of four side by side before the arbiter: docs/developer/architecture.md.
-// Not thread-safe.
+// Golden model of a card's host ports, up to four in parallel before the arbiter: docs/developer/architecture.md. Not
+// thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace trammel::model {
 
 class HostPorts {
  public:
-  // Which are built; their numbers at the inner port follow in this order.
+  // The ports that are built; their numbers at the inner port follow in this order.
   struct Config {
     bool axi = true;
     bool wishbone = false;
-    bool pipelined = false;  // Wishbone
+    bool pipelined = false;  // the Wishbone port is pipelined
     bool uart = false;
     bool spi = false;
     unsigned break_bits = 20;
@@ -28,7 +28,7 @@ class HostPorts {
     std::size_t ports() const { return std::size_t{axi} + wishbone + uart + spi; }
   };
 
-  // Pins; what the inner port says is not looked at here.
+  // Pins. The fields of the inner port are ignored here.
   struct Inputs {
     Axi4LitePort::Inputs axi;
     WishbonePort::Inputs wishbone;
@@ -41,13 +41,13 @@ class HostPorts {
     std::uint32_t data = 0;
   };
 
-  // Throws std::invalid_argument where no port is built.
+  // Throws std::invalid_argument if no port is built.
   explicit HostPorts(const Config& config)
       : config_(config), arbiter_(config.ports()), wishbone_(config.pipelined), uart_(config.break_bits) {}
 
   void reset() { *this = HostPorts(config_); }
 
-  // One rising edge with reset low; `answer`: what the inner port says in this clock.
+  // One rising edge with reset low; `answer`: the inner port's answer in this clock.
   void clock(const Inputs& in, const Answer& answer) {
     const PortArbiter::Accesses now = accesses();
     const std::size_t served = arbiter_.served();
@@ -103,7 +103,7 @@ class HostPorts {
     return all;
   }
 
-  // Engine and port see each other's registers.
+  // Engine and port see each other's registered outputs from before the edge.
   void clock_uart(bool rx, const Answer& answer) {
     const UartPort::Outputs& port = uart_.outputs();
     FrameEngine::Inputs engine;

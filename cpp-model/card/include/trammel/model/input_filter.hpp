@@ -1,8 +1,8 @@
-// Golden model of the digital filter of the inputs, rtl/io/input_filter.sv. A scan of 64 clocks looks at input n in its
-// clock 2 n + 2. An input passes when its level has differed from the output at each clock of as many whole scans as
-// its length says; the length counts that was set two clocks before the look. With captures the filter tells of an
-// input, too, whether it is quiet: it has stood at the output for so many whole scans. Not thread-safe; no errors are
-// reported.
+// Golden model of the digital filter of the inputs, rtl/io/input_filter.sv. A scan of 64 clocks looks at input n in
+// its clock 2 n + 2. An input passes when its level has differed from the output in every clock of as many whole
+// scans as its filter length. The length in use is the one that was set two clocks before the look. With captures the
+// filter also tells whether an input is quiet: it has equalled the output for that number of whole scans. Not
+// thread-safe; no errors are reported.
 #pragma once
 
 #include <array>
@@ -17,21 +17,21 @@ class InputFilter {
 
   struct Inputs {
     std::uint32_t levels = 0;      // bit n: input n, behind synchroniser and polarity
-    bool set = false;              // not within kScanClocks after a reset
+    bool set = false;              // never within kScanClocks clocks after a reset
     unsigned set_input = 0;        // 0 to 31
     std::uint16_t set_length = 0;  // scans
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
-    unsigned clock = 0;  // of the scan, 0 to 63
+    unsigned clock = 0;  // clock of the scan, 0 to 63
     bool clearing = true;
-    std::uint32_t levels = 0;    // of the outputs
-    std::uint32_t quiet = 0;     // inputs that are
-    std::uint32_t differed = 0;  // inputs that differ from their outputs since their last look
-    std::uint32_t agreed = 0;    // that agree
+    std::uint32_t levels = 0;    // levels of the outputs
+    std::uint32_t quiet = 0;     // inputs that are quiet
+    std::uint32_t differed = 0;  // inputs that have differed from their outputs since their last look
+    std::uint32_t agreed = 0;    // inputs that have equalled their outputs since their last look
     std::array<std::uint16_t, kInputs> lengths{};
     std::array<std::uint16_t, kInputs> counts{};
-    std::array<std::uint16_t, 2> length_read{};  // by the RAM and by the register behind it
+    std::array<std::uint16_t, 2> length_read{};  // length at the RAM's output, and in the register behind it
   };
 
   explicit InputFilter(bool tells_quiet = false) : tells_quiet_(tells_quiet) {}
@@ -61,7 +61,7 @@ class InputFilter {
   State& state() { return state_; }
 
  private:
-  // `bit`: the input's.
+  // `bit`: the mask of the input.
   void look(unsigned input, std::uint32_t bit, std::uint32_t differs) {
     const bool steady = ((state_.differed | state_.agreed) & bit) != 0;
     std::uint16_t& count = state_.counts[input];

@@ -8,13 +8,13 @@
 
 namespace trammel::model {
 
-// `pins` of them, 1 .. 32; bits of absent ones are 0.
+// The mask of `pins` pins, 1 .. 32; bits of absent pins are 0.
 inline std::uint32_t present_pins(unsigned pins) { return static_cast<std::uint32_t>((std::uint64_t{1} << pins) - 1); }
 
-// A level at the pin is seen two clocks later, inverted where INPUT_POLARITY says so at once.
+// The level of a pin is seen two clocks later. INPUT_POLARITY inverts the seen level at once.
 class InputPins {
  public:
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint32_t last = 0;
     std::uint32_t seen = 0;
@@ -37,7 +37,7 @@ class InputPins {
 
   const State& state() const { return state_; }
   State& state() { return state_; }
-  std::uint32_t present() const { return present_; }  // the bits of pins that there are
+  std::uint32_t present() const { return present_; }  // mask of the pins that the card has
   std::uint32_t level() const { return state_.seen ^ state_.inverted; }
 
  private:
@@ -45,11 +45,12 @@ class InputPins {
   State state_;
 };
 
-// Levels that commands set and clear. At a cut those that OUTPUT_SAFE names take its levels, at a cause and at a cut
-// those that OUTPUT_SAFE_CAUSE names, and go before; the emergency stop's latch gives the latter theirs at the pins.
+// The output levels that commands set and clear. At a cut, the outputs that OUTPUT_SAFE names take its levels. At a
+// cause and at a cut, those that OUTPUT_SAFE_CAUSE names take its levels, with priority. The emergency stop's latch
+// forces the levels of OUTPUT_SAFE_CAUSE at the pins.
 class OutputPins {
  public:
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint16_t level = 0;
     std::uint16_t safe = 0;
@@ -86,7 +87,7 @@ class OutputPins {
   State& state() { return state_; }
   // At the pins; `latched`: the emergency stop's latch is set.
   std::uint16_t level(bool latched) const { return latched ? at_cause(state_.level) : state_.level; }
-  // A cause that goes on changes nothing.
+  // True if a cause changes no level.
   bool safe() const { return at_cause(state_.level) == state_.level; }
 
  private:
@@ -98,18 +99,19 @@ class OutputPins {
   State state_;
 };
 
-// What roles of outputs follow.
+// The signals that the roles of outputs follow.
 struct OutputRoleLevels {
-  bool enabled = false;   // the drives are
-  bool released = false;  // their brake is
+  bool enabled = false;   // the drives are enabled
+  bool released = false;  // the brake is released
   bool pump = false;      // the charge pump's wave
-  bool healthy = false;   // the card is
+  bool healthy = false;   // the card is healthy
 };
 
-// Outputs with a role follow it instead of their level: idle, or the other level while the role is active.
+// An output with a role follows the role instead of its level. It has its idle level while the role is inactive, and
+// the other level while the role is active.
 class OutputRoles {
  public:
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint16_t enable = 0;
     std::uint16_t brake = 0;
@@ -136,7 +138,7 @@ class OutputRoles {
   }
 
   const State& state() const { return state_; }
-  // At the pins. The emergency stop's latch disables drives and sets brakes.
+  // Levels at the pins. The emergency stop's latch disables the drives and sets the brakes.
   std::uint16_t pins(std::uint16_t level, const OutputRoleLevels& roles, bool latched) const {
     const unsigned all = state_.enable | state_.brake | state_.pump | state_.healthy;
     unsigned active = (roles.pump ? state_.pump : 0U) | (roles.healthy ? state_.healthy : 0U);

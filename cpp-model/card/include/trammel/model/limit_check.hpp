@@ -1,7 +1,8 @@
-// Golden model of the limit check: what the machine's inputs say about stops. A step into an active limit, a drive's
-// fault, the probe outside probing and the tool setter are causes; the stop control decides what they do.
+// Golden model of the limit check: derives causes of a stop from the machine's inputs. Causes are a step into an
+// active limit, a drive's fault, the probe outside probing, and the tool setter; the stop control decides how to
+// react.
 //
-// What comes in clock c is a cause in c+1, and is in FAULT and LIMIT_STATE at c+2. Not thread-safe; no errors are
+// An event in clock c is a cause in c+1, and is in FAULT and LIMIT_STATE at c+2. Not thread-safe; no errors are
 // reported.
 #pragma once
 
@@ -19,33 +20,33 @@ class LimitCheck {
 
   struct Inputs {
     InputRoles roles;
-    std::uint8_t step = 0;  // steps on the path, a bit an axis
-    std::uint8_t dir = 0;   // of each axis's last one: 1 backwards
+    std::uint8_t step = 0;  // steps on the path, a bit per axis
+    std::uint8_t dir = 0;   // direction of each axis's last step, 1 = negative
     bool runs = false;      // a path or a direct move is under way
     bool probing = false;
-    bool stopping = false;    // a fault's ramp
+    bool stopping = false;    // the ramp of a fault is under way
     std::uint32_t clear = 0;  // event: ones written to FAULT
     Setting setting;          // STOP_CAUSES, LIMIT_OVERRIDE, OVERTRAVEL of each axis
   };
-  // Of an axis; index 0 is its negative end, 1 its positive one.
+  // Flags of an axis: index 0 is the negative end, 1 the positive end.
   using Ends = std::array<bool, 2>;
   struct AxisState {
     Ends overridden{};
-    Ends reached{};        // whence its limit was reached: where the last step went; both before the first one
-    Ends blamed{};         // with `causes`
-    bool moved = false;    // there was a step since reset
-    bool pressed = false;  // some limit, in the last clock
+    Ends reached{};        // side of the last step when the limit became active; both before the first step
+    Ends blamed{};         // ends to report together with `causes`
+    bool moved = false;    // the axis has made a step since reset
+    bool pressed = false;  // a limit of the axis was active in the last clock
     std::uint32_t overtravel = 0;
     std::uint32_t left = 0;  // steps into a limit that the axis may still make
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::array<AxisState, kMaxAxes> axes{};
     std::uint8_t any_step = 0;
     std::uint8_t shared = 0;
     bool probe_counts = false;
     bool tool_setter_counts = false;
-    bool probe = true;  // their last levels
+    bool probe = true;  // levels in the last clock
     bool tool_setter = true;
     std::uint8_t drives = 0;
     StopCauses causes{};
@@ -61,7 +62,7 @@ class LimitCheck {
   State& state() { return state_; }
   const StopCauses& causes() const { return state_.causes; }
   std::uint32_t limit_state() const { return state_.shown; }
-  // Nothing changes while no step is made and these inputs stay.
+  // True if nothing changes while no step is made and these inputs stay.
   bool rests(const Inputs& in) const;
 
  private:

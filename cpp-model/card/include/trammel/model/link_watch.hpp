@@ -1,7 +1,8 @@
-// Golden model of the watch over the link to the session that writes: the one whose word of the stream, or whose
-// LINK_TIMEOUT, was accepted last. Each access of it that is accepted starts the time anew; when LINK_TIMEOUT units and
-// up to one more have passed without one, the link is lost until LINK_TIMEOUT is written. When a later session begins
-// at its port, the writing session is gone; its time goes on. Not thread-safe; no errors are reported.
+// Golden model of the watch over the link to the writing session: the session whose stream word, or whose write of
+// LINK_TIMEOUT, was accepted last. Each accepted access of that session restarts the time. The link is lost after
+// LINK_TIMEOUT units, plus up to one more, without such an access; it stays lost until LINK_TIMEOUT is written. When
+// a later session begins at the same port, the writing session is gone, but its time continues. Not thread-safe; no
+// errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +18,20 @@ class LinkWatch {
   static constexpr unsigned kUnitBits = 16;
 
   struct Inputs {
-    bool ack = false;  // event: an access was answered,
+    bool ack = false;  // event: an access was answered
     bool error = false;
     bool write = false;
     std::uint32_t address = 0;  // bytes
     std::uint8_t port = 0;
-    bool of_session = true;    // asked for by a session of its port,
-    bool new_session = false;  // the first access of one
+    bool of_session = true;    // a session of the port made the access, not the port itself
+    bool new_session = false;  // it is the first access of a session
     Setting setting;           // LINK_TIMEOUT, in the clock of its answer
     bool unit = false;         // event: a unit of time has passed
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
-    bool written = false;  // there is, or was, a writing session
-    std::uint8_t writer = 0;
+    bool written = false;     // there is, or was, a writing session
+    std::uint8_t writer = 0;  // its port
     bool gone = false;
     std::uint32_t timeout = 0;  // units
     std::uint32_t left = 0;     // units that must pass before the last one
@@ -64,7 +65,7 @@ class LinkWatch {
   State& state() { return state_; }
   bool gone() const { return state_.gone; }
   bool lost() const { return state_.lost; }
-  // Time counts.
+  // True while time is counted.
   bool watches() const { return state_.timeout != 0 && !state_.lost; }
 
  private:

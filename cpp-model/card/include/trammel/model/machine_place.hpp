@@ -1,8 +1,8 @@
-// Golden model of the machine's place: which axes stand where the host believes (POSITION_VALID) and which were homed
-// (HOMED). The host writes both; an axis loses them at a fault of its drive; at a cut while it moves, and as its drive
-// is disabled, unless KEEPS_PLACE names it. It moves from its first step on while a piece or a direct move is under
-// way, at a ratio that is not 0. What takes a place is judged a clock after it comes. A bit of a mask is an axis. Not
-// thread-safe; no errors are reported.
+// Golden model of the machine's place: the axes that are at the positions that the host assumes (POSITION_VALID), and
+// the axes that were homed (HOMED). The host writes both. An axis loses both at a fault of its drive. Unless
+// KEEPS_PLACE names it, it also loses them at a cut while it moves, and when its drive is disabled. An axis counts as
+// moving from its first step on, while a piece or a direct move is under way at a ratio other than 0. Losses are
+// judged one clock after their event. Bit n of a mask is axis n. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -16,29 +16,29 @@ class MachinePlace {
  public:
   struct Inputs {
     Setting setting;            // KEEPS_PLACE, SET_PLACE
-    bool cut = false;           // event
+    bool cut = false;           // a cut, or the closing before it
     bool at_rest = false;       // the ratio is 0
     bool runs = false;          // a piece or a direct move is under way
-    std::uint8_t step = 0;      // on the path
+    std::uint8_t step = 0;      // steps on the path
     std::uint8_t drives = 0;    // levels: drive faults
-    std::uint8_t disabled = 0;  // events: the drive is disabled
+    std::uint8_t disabled = 0;  // events: the axis's drive is disabled
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint8_t valid = 0;
     std::uint8_t homed = 0;
     std::uint8_t keeps = 0;
     std::uint8_t moved = 0;  // has made a step since the motion under way began
-    // Of the clock before.
+    // Inputs of the previous clock.
     std::uint8_t drives = 0;
     std::uint8_t disabled = 0;
-    bool cut = false;  // at a ratio that was not 0
+    bool cut = false;  // there was a cut at a ratio other than 0
   };
 
   explicit MachinePlace(unsigned axes = card_map::kMaxAxes) : present_(static_cast<std::uint8_t>((1U << axes) - 1)) {}
 
-  // One rising edge. A write in clock c shows at c + 1, a loss at c + 2. So a loss wins over a write in its clock and
-  // over one in the next, and KEEPS_PLACE counts for it in the clock in which it is written.
+  // One rising edge. A write in clock c takes effect at c + 1, a loss at c + 2. A loss therefore wins over a write in
+  // its own clock and in the next one, and obeys a KEEPS_PLACE written in its own clock.
   void clock(const Inputs& in) {
     const std::uint8_t lost = lost_now();
     if (in.setting.set) set(in.setting);
@@ -57,7 +57,7 @@ class MachinePlace {
     return std::uint32_t{state_.valid} << card_map::field::kPlacePositionValidShift |
            std::uint32_t{state_.homed} << card_map::field::kPlaceHomedShift;
   }
-  // With these inputs nothing changes, however many clocks pass.
+  // True if clocks with these inputs change nothing, however many pass.
   bool rests(const Inputs& in) const {
     const auto known = static_cast<std::uint8_t>(state_.valid | state_.homed);
     const bool settled = moved_with(in) == state_.moved && (in.drives & present_) == state_.drives &&
@@ -70,7 +70,7 @@ class MachinePlace {
   std::uint8_t moved_with(const Inputs& in) const {
     return in.runs ? static_cast<std::uint8_t>(state_.moved | in.step) : std::uint8_t{0};
   }
-  // By the events of the clock before.
+  // The axes that lose their place, judged from the events of the previous clock.
   std::uint8_t lost_now() const {
     const unsigned stopped = state_.cut ? state_.moved : 0U;
     return static_cast<std::uint8_t>(state_.drives | ((stopped | state_.disabled) & ~state_.keeps));

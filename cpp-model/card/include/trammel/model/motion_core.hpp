@@ -1,5 +1,6 @@
-// Golden model of the motion core: sequencers, time, path engines, axes and the stop control between the queues and the
-// pins. One rising edge moves everything from what stood before it. Not thread-safe; no errors are reported.
+// Golden model of the motion core: sequencers, time base, path engines, axes and stop control, between the queues and
+// the pins. All parts take one rising edge together: each sees the state from before it. Not thread-safe; no errors are
+// reported.
 #pragma once
 
 #include <array>
@@ -35,7 +36,7 @@ class MotionCore {
     Setting setting;
     bool abort = false;
     std::uint32_t clear_fault = 0;
-    bool session_gone = false;  // the one that wrote the stream
+    bool session_gone = false;  // the session that wrote the stream is gone
     bool link_lost = false;
     bool probe_clear = false;
     // queues
@@ -49,13 +50,13 @@ class MotionCore {
     bool start = false;
     std::uint8_t start_mask = 0;
     std::uint32_t loader_data = 0;
-    std::uint32_t levels = 0;  // of the card's inputs
-    std::uint32_t raw = 0;     // before their filters
-    std::uint32_t quiet = 0;   // of a card with captures
-    InputRoles roles;          // of a card with machine inputs
+    std::uint32_t levels = 0;  // filtered levels of the card's inputs
+    std::uint32_t raw = 0;     // levels before the filters
+    std::uint32_t quiet = 0;   // inputs that are quiet; only cards with captures
+    InputRoles roles;          // only cards with machine inputs
     bool emergency = false;    // level: the emergency stop's cause
   };
-  // A bit for each axis.
+  // A bit per axis.
   struct Outputs {
     std::uint32_t step = 0;  // pins
     std::uint32_t dir = 0;
@@ -64,10 +65,10 @@ class MotionCore {
     std::uint32_t live = 0;
     std::uint32_t axis_busy = 0;
     std::uint32_t step_fault = 0;
-    std::uint32_t engine_step = 0;  // of path_step: those that came from a path engine
+    std::uint32_t engine_step = 0;  // the bits of path_step that came from a path engine
     bool busy = false;
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     DirectLoader loader;
     Sequencer sequencer;
@@ -87,15 +88,15 @@ class MotionCore {
     WaitTimer wait_timer{};
     Probe probe{};
     std::vector<Axis> axes{};
-    bool axes_live = false;  // a clock late
-    bool running = false;    // a clock late
-    bool probing = false;    // a clock late
-    unsigned busy_left = 0;  // clocks
+    bool axes_live = false;  // an axis is live; one clock late
+    bool running = false;    // something runs; one clock late
+    bool probing = false;    // the probe is busy; one clock late
+    unsigned busy_left = 0;  // clocks until `busy` falls
     Outputs out{};
   };
 
-  // `idle_level`: {second pins, first pins}, `axes` bits each. `engines`: what is built in, what is beside the path
-  // engines.
+  // `idle_level`: {second pins, first pins}, `axes` bits each. `engines`: mask of the optional engines that are built
+  // in.
   MotionCore(unsigned axes, std::uint32_t idle_level, std::uint32_t engines = 0, const PathCommands::Config& pins = {});
 
   // One rising edge.
@@ -114,13 +115,13 @@ class MotionCore {
   const FeedGenerator::Outputs& feed() const { return state_.feed.outputs(); }
   const PathCommands& commands() const { return state_.commands; }
   const Probe& probe() const { return state_.probe; }
-  // The probe wants a snapshot in this clock, and with these inputs.
+  // True if the probe asks for a snapshot in this clock, with these inputs.
   bool probe_asks(const Inputs& in) const {
-    // Without either the inputs need not be looked at.
+    // If neither is true, the probe cannot ask: its inputs need not be computed.
     if (!state_.probe.busy() && !state_.sequencer.probe_waits()) return false;
     return state_.probe.asks(probe_inputs(in));
   }
-  // The snapshot REST is asked for in this clock.
+  // True if the snapshot REST is requested in this clock.
   bool rests(const Inputs& in) const {
     if (!in.abort && !state_.stop.closing()) return false;
     const Probe::Inputs probe = probe_inputs(in);
@@ -132,20 +133,20 @@ class MotionCore {
   bool chord_tick() const { return state_.engines.chord_tick(); }
   std::uint32_t position(unsigned axis) const { return state_.axes[axis].state().shaper.outputs().position; }
 
-  // Takes the axis's outputs over into this block's.
+  // Copies the outputs of the axis to the outputs of this block.
   void show_axis(unsigned n);
-  // What the parts see.
+  // The inputs of the parts.
   Probe::Inputs probe_inputs(const Inputs& in) const;
   Sequencer::Inputs sequencer_inputs(const Inputs& in, const Probe::Inputs& probe) const;
   UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;
-  // The guard counts; in position streaming it does not.
+  // True while the under-run guard counts. It does not count in position streaming.
   bool guards() const { return has_guard_ && !state_.sequencer.streaming().on; }
 
-  // STATUS.busy falls when nothing has run for this many clocks.
+  // STATUS.busy falls after this many clocks in which nothing ran.
   static constexpr unsigned kBusyClocks = 11;
 
   PathCommands::Inputs command_inputs(const Inputs& in, const StopControl::Inputs& stop) const;
-  // Without a setting.
+  // The setting is left empty.
   TimeBase::Inputs time_inputs() const {
     const Sequencer::Outputs& s = state_.sequencer.outputs();
     return {state_.stop.outputs().hold, {}, s.piece_class, s.slew_shift};
@@ -158,16 +159,16 @@ class MotionCore {
   CardHealth::Inputs health_inputs(const Inputs& in) const {
     return {in.setting, state_.stop.outputs().fault, state_.watchdog.running()};
   }
-  // No tick is taken, since the drives are not enabled.
+  // True while no tick is taken because the drives are not enabled.
   bool waits_for_drives() const { return has_enables_ && state_.drives.waits(); }
   bool wants_drives() const { return state_.sequencer.outputs().direct || state_.sequencer.ticking_path(); }
-  // Levels of the outputs without pulses; `latched`: the emergency stop's latch is set.
+  // Levels of the outputs, without PWM pulses; `latched`: the emergency stop's latch is set.
   std::uint16_t output_levels(bool latched) const {
     const OutputRoleLevels roles{state_.drives.enabled(), state_.drives.released(), state_.health.pump(),
                                  state_.health.healthy()};
     return state_.commands.outputs(latched, roles);
   }
-  // At their pins.
+  // Levels at the output pins, with PWM pulses.
   std::uint16_t output_pins(bool latched) const {
     return state_.commands.pins(output_levels(latched), state_.sequencer.outputs().silent,
                                 state_.time_base.outputs().ratio == 0);
@@ -205,7 +206,7 @@ inline Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
   return probe;
 }
 
-// Each consumer before its producer: what a block sees is what stood before this edge.
+// Each consumer is clocked before its producer, so that it sees the producer's outputs from before the edge.
 template <class ClockPart>
 void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   const Probe::Inputs probe = probe_inputs(in);

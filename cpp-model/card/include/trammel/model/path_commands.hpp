@@ -1,8 +1,9 @@
-// Golden model of what commands do at their place on the path beside motion: OUTPUT, PWM and MARK.
+// Golden model of the commands that take effect at a point of the path, in addition to motion: OUTPUT, PWM and MARK.
 //
-// They take effect kToStep clocks after the end of the path that ran as they were decoded shows, that is with the step
-// of its last tick; where none runs, as long after they are taken. What is taken while others are on their way goes
-// with them (outputs, PWM) or follows (marks). Not thread-safe; no errors are reported.
+// They take effect kToStep clocks after the end of the path that ran when they were decoded shows, that is with the
+// step of its last tick. If no path runs, they take effect the same number of clocks after they are taken. A command
+// that is taken while others are on their way takes effect with them (outputs, PWM) or after them (marks). Not
+// thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -21,39 +22,39 @@ class PathCommands {
   };
   struct Inputs {
     bool cut = false;
-    bool caused = false;  // a cause comes, or a stop is under way or has been
-    bool halt = false;    // what waits is dropped, but the outputs stay
+    bool caused = false;  // a cause of a stop comes, a stop is under way, or the card is stopped
+    bool halt = false;    // waiting commands are dropped, but the outputs keep their levels
     bool output = false;  // an OUTPUT is taken; its last halfword is on the load bus
     bool mark = false;    // a MARK is taken
-    bool pwm = false;     // a PWM is taken, likewise
+    bool pwm = false;     // a PWM is taken; its last halfword is on the load bus
     bool over = false;    // event: a path has ended
     bool runs = false;    // a path is under way
     LoadWord load;
     Setting setting;
     Pwm::Speed speed;
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     OutputPins outputs;
     OutputRoles roles;
     Pwm pwm;
-    std::uint64_t masks = 0;  // clear, set
+    std::uint64_t masks = 0;  // masks of the last OUTPUT: {clear, set}
     std::uint16_t set = 0;
     std::uint16_t clear = 0;
-    bool merges = false;
-    bool output_waits = false;  // an OUTPUT, or a PWM
+    bool merges = false;        // the masks are complete and join `set` and `clear`
+    bool output_waits = false;  // an OUTPUT or a PWM waits
     bool mark_waits = false;
     bool mark_goes = false;
     bool mark = false;
-    unsigned left = 0;  // clocks until what goes has taken effect
+    unsigned left = 0;  // clocks until the commands on their way have taken effect
     std::uint32_t marks_taken = 0;
     std::uint32_t marks = 0;
   };
 
-  // From the clock in which a path's end shows, or a command could take effect, to the one in which it has.
+  // Clocks from the one in which a path's end shows, or a command could take effect, to the one in which it has.
   static constexpr unsigned kToStep = 7;
 
-  // `pwm`: outputs may carry pulses.
+  // `pwm`: the card has pulse width modulation.
   explicit PathCommands(const Config& config, bool pwm = false)
       : has_pwm_(pwm),
         state_{OutputPins(config.outputs, config.output_idle), OutputRoles(config.outputs, config.output_idle),
@@ -83,16 +84,16 @@ class PathCommands {
   const State& state() const { return state_; }
   State& state() { return state_; }
   bool has_pwm() const { return has_pwm_; }
-  // What takes effect in this clock.
+  // True if commands take effect in this clock.
   bool due(const Inputs& in) const { return state_.left == 1 && !in.cut && !in.halt; }
   Pwm::Inputs pwm_inputs(const Inputs& in) const {
     return {in.setting, in.load, in.pwm, due(in), in.cut || in.halt, in.speed};
   }
-  // Levels without pulses; `latched`: the emergency stop's latch is set.
+  // Levels without PWM pulses; `latched`: the emergency stop's latch is set.
   std::uint16_t outputs(bool latched, const OutputRoleLevels& roles) const {
     return state_.roles.pins(state_.outputs.level(latched), roles, latched);
   }
-  // At the pins: `level` with pulses; `at_rest`: the ratio is 0.
+  // Levels at the pins: `level` with PWM pulses; `at_rest`: the ratio is 0.
   std::uint16_t pins(std::uint16_t level, bool silent, bool at_rest) const {
     return has_pwm_ ? state_.pwm.pins(level, silent, at_rest) : level;
   }
@@ -100,7 +101,7 @@ class PathCommands {
   bool mark() const { return state_.mark; }  // event: a snapshot is wanted
 
  private:
-  // An OUTPUT's masks are whole a clock after it is taken; the later one wins.
+  // The masks of an OUTPUT are complete one clock after it is taken. The later of two OUTPUTs wins.
   void take(const Inputs& in) {
     if (state_.merges) {
       const auto set = static_cast<std::uint16_t>(state_.masks);

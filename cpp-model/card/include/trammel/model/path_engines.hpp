@@ -1,14 +1,16 @@
-// Golden model of the path engines: what stands between the tick of the card (feed domain) and the axes.
+// Golden model of the path engines: the blocks between the tick of the card (feed domain) and the axes.
 //
-// Feed ticks and swaps leave 3 clocks later as path ticks and swaps: as long as the prescaler takes, so that a path on
-// prescaled ticks and a line after it keep their order. On another engine than lines the prescaler, a pulse generator,
-// makes path ticks from feed ticks; they wait until the engine can take them. Its steps leave by axis.
+// Feed ticks and swaps leave 3 clocks later as path ticks and swaps. The prescaler has the same latency, so a path on
+// prescaled ticks and a line after it keep their order. For engines other than lines the prescaler, a pulse
+// generator, derives path ticks from feed ticks; they wait until the engine can take them. The engine's steps leave
+// as a bit per axis.
 //
-// From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step at c+8 by axis.
-// `done`: no tick of a path on an engine is in the 3 clocks, no path tick waits and the accumulator has finished the
-// last one; a clock late.
-// `payload_ready`: as that for an engine's ticks alone, but already in the last clocks of the accumulator's step (from
-// the 6th clock after its tick on, in 8 directions from the 14th): a load that is asked for then comes after it.
+// From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step per axis at c+8.
+// `done`, one clock late: no tick of a path on an engine is in the 3 clocks of delay, no path tick waits, and the
+// accumulator has finished its last step.
+// `payload_ready`: the same, for an engine's ticks only; it is already true in the last clocks of the accumulator's
+// step (from the 6th clock after its tick on, in 8 directions from the 14th), since a load that is requested then
+// arrives after the step.
 // Not thread-safe; no errors are reported.
 #pragma once
 
@@ -29,7 +31,7 @@ class PathEngines {
     bool cut = false;
     bool tick = false;  // feed domain
     bool swap = false;
-    // Sampled with swap: what the path runs on, by its card_map::engine; the state of one that is not lines is loaded.
+    // Sampled with swap: the engine of the path, as card_map::engine. An engine other than lines is loaded by then.
     std::uint8_t engine = card_map::engine::kLines;
     LoadWord load;
     bool engine_taken = false;  // the path is on an engine and still takes feed ticks
@@ -37,34 +39,34 @@ class PathEngines {
   struct Outputs {
     bool tick = false;  // path domain
     bool swap = false;
-    bool path_tick = false;  // of the accumulator
-    std::uint8_t step = 0;   // engines' steps, by axis
-    std::uint8_t dir = 0;    // 1 = negative; means something with a step
+    bool path_tick = false;  // path tick of the accumulator
+    std::uint8_t step = 0;   // steps of the engines, a bit per axis
+    std::uint8_t dir = 0;    // 1 = negative; valid with a step
     bool ready = true;       // a feed tick may be taken
     bool payload_ready = true;
     bool shadows_free = true;  // the axes' increments may be loaded
-    // The arc generator's, by axis.
+    // Outputs of the arc generator: a halfword of an increment; load and swap, a bit per axis.
     std::uint16_t chord_word = 0;
     std::uint8_t chord_load = 0;
     std::uint8_t chord_swap = 0;
     bool done = false;
-    bool missed_end = false;  // with done: not on the commanded end point
+    bool missed_end = false;  // with done: the path did not end at the commanded end point
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     DeviationAccumulator accumulator;
     ArcGenerator arc;
-    bool over = false;  // the arc is
-    bool over_next = false;
+    bool over = false;       // the arc is over; clears the arc generator
+    bool over_next = false;  // `over` of the next clock
     bool gate_payload_ready = true;
     PulseGenerator prescaler;
-    std::uint32_t ticks = 0;      // on their way, bit k leaves in k clocks; bit 0 is visible
-    std::uint32_t own_ticks = 0;  // those that the axes get
-    bool chord_tick = false;      // the one that shows is the arc generator's
+    std::uint32_t ticks = 0;      // feed ticks on their way; bit k leaves in k clocks, bit 0 is visible
+    std::uint32_t own_ticks = 0;  // ticks that go to the axes, as `ticks`
+    bool chord_tick = false;      // the visible tick is the arc generator's
     std::uint32_t swaps = 0;
-    std::uint32_t waiting = 0;                       // path ticks
-    std::uint8_t engine = card_map::engine::kLines;  // of the path swapped in last
-    // The accumulator's steps by axis.
+    std::uint32_t waiting = 0;                       // path ticks that wait for the engine
+    std::uint8_t engine = card_map::engine::kLines;  // engine of the path that was swapped in last
+    // The accumulator's axes, and its steps as a bit per axis.
     unsigned axis_x = 0;
     unsigned axis_y = 0;
     std::uint8_t routed_step = 0;
@@ -98,24 +100,24 @@ class PathEngines {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // No path tick is on its way to an engine or waits for it, and none makes a step.
+  // True if no path tick waits or is on its way to an engine, and no engine makes a step.
   bool quiet() const { return state_.gate_payload_ready; }
 
-  // The tick that shows is a path tick of an arc in chords.
+  // True if the visible tick is a path tick of an arc in chords.
   bool chord_tick() const { return state_.chord_tick; }
 
-  // What an engine says, from its registers.
+  // The state of an engine, as its registers show it.
   struct Said {
     bool ready = false;
     bool at_end = false;
-    bool stepping = false;  // no load may come yet
-    std::uint8_t step = 0;  // by axis
+    bool stepping = false;  // during a step, when no load may arrive
+    std::uint8_t step = 0;  // a bit per axis
     std::uint8_t dir = 0;
   };
-  // Of the engine on which the path runs.
+  // The state of the engine that runs the path.
   Said said() const {
     switch (state_.engine) {
-      // Steps are the axes' own, and it ends where they do.
+      // The axes make the steps, and the path ends with its last tick.
       case card_map::engine::kLines:
       case card_map::engine::kArcGenerator:
         return {true, true, false, 0, 0};
@@ -130,7 +132,7 @@ class PathEngines {
  private:
   static constexpr unsigned kDelay = 3;  // feed domain to path domain
 
-  // What the sequencer may know of it, a clock late.
+  // The conditions that the sequencer sees, one clock late.
   void judge(const Inputs& in, const Said& engine) {
     const bool feed_ticks = in.tick || state_.ticks != 0;
     const bool coming = feed_ticks && on_engine(state_.engine);
@@ -142,7 +144,7 @@ class PathEngines {
                        !state_.arc.outputs().loadable;
   }
 
-  // The accumulator's two axes are those of its plane.
+  // The accumulator steps the two axes of its plane.
   void route(const LoadWord& load, const DeviationAccumulator::Outputs& accumulator) {
     const unsigned x = 1U << state_.axis_x;
     const unsigned y = 1U << state_.axis_y;
@@ -160,7 +162,7 @@ class PathEngines {
     state_.out.dir = engine.dir;
   }
 
-  // Path ticks wait for the engine, which answers a tick with ready low a clock later.
+  // Path ticks wait for the engine, which answers a tick with ready low one clock later.
   void give(bool cut, bool engine_ready) {
     const bool given = state_.waiting != 0 && engine_ready && !state_.out.path_tick;
     const bool comes = state_.prescaler.outputs().step && state_.engine != card_map::engine::kArcGenerator;
@@ -170,7 +172,7 @@ class PathEngines {
     state_.out.payload_ready = state_.gate_payload_ready && state_.arc.outputs().loadable;
   }
 
-  // It is over when the path takes no more feed ticks and none is on its way.
+  // The arc is over when its path takes no more feed ticks and no tick is on its way.
   template <class ClockPart>
   void clock_arc(const Inputs& in, bool tick, const ClockPart& clock_part) {
     const bool clear = in.cut || state_.over;
@@ -187,7 +189,7 @@ class PathEngines {
   void delay(const Inputs& in, bool chord_tick) {
     state_.ticks = in.cut ? 0 : state_.ticks >> 1 | (in.tick ? 1U << (kDelay - 1) : 0);
     state_.swaps = in.cut ? 0 : state_.swaps >> 1 | (in.swap ? 1U << (kDelay - 1) : 0);
-    // The axes' own: feed ticks of lines, and an arc's path ticks, a clock after the generator.
+    // Ticks that go to the axes: feed ticks of lines, and path ticks of an arc, one clock after the arc generator's.
     const bool own = in.tick && state_.engine != card_map::engine::kArcGenerator;
     state_.own_ticks = in.cut ? 0 : state_.own_ticks >> 1 | (own ? 1U << (kDelay - 1) : 0) | (chord_tick ? 1 : 0);
     state_.chord_tick = chord_tick && !in.cut;

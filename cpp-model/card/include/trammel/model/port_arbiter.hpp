@@ -1,5 +1,5 @@
-// Golden model of the port arbiter: several host ports before the one inner port, served in turn
-// (docs/developer/architecture.md). One instance for each card; not thread-safe.
+// Golden model of the port arbiter: several host ports share the one inner port in turn
+// (docs/developer/architecture.md). One instance per card; not thread-safe.
 #pragma once
 
 #include <array>
@@ -14,17 +14,17 @@ class PortArbiter {
   static constexpr std::size_t kMaxPorts = 4;
 
   struct Access {
-    bool request = false;  // event; the rest stands until the answer
+    bool request = false;  // event; the other fields are stable until the answer
     bool write = false;
     bool partial = false;
     std::uint32_t address = 0;  // byte address, 12 bits
     std::uint32_t data = 0;
-    bool of_session = true;    // asked for by a session of the port, not by the port itself
-    bool new_session = false;  // the first access of one
+    bool of_session = true;    // a session of the port made the access, not the port itself
+    bool new_session = false;  // it is the first access of a session
   };
   using Accesses = std::array<Access, kMaxPorts>;
 
-  // What the core sees.
+  // The access as the core sees it, and its port.
   struct Inner {
     Access access;
     std::uint8_t port = 0;
@@ -37,11 +37,12 @@ class PortArbiter {
 
   void reset() { *this = PortArbiter(ports_); }
 
-  // The inner port's request side in this clock. With one port it is wires; with more a register: a request at c is
-  // noted at c+1 and passed on at c+2, or in the clock after the answer to the one before it.
+  // The request side of the inner port in this clock. With one port it is combinational. With more ports it is
+  // registered: a request at c is noted at c+1 and passed on at c+2, or in the clock after the answer to the previous
+  // request.
   Inner inner(const Accesses& now) const { return ports_ == 1 ? Inner{now[0], 0} : inner_; }
 
-  // The port that an answer of the core belongs to; it is passed on in the very clock.
+  // The port to which an answer of the core belongs. The answer is passed on in the same clock.
   std::size_t served() const { return inner_.port; }
 
   // One rising edge with reset low; `ack`: the core answers.

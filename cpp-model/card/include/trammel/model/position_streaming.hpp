@@ -1,10 +1,11 @@
-// Golden model of position streaming: its mode, the ticks beyond a period's end, and when the next period is missing.
+// Golden model of position streaming: its mode, the ticks beyond the end of a period, and the detection of a missing
+// period.
 //
-// Periods are lines. A line whose N ticks are taken while nothing follows goes on; each tick beyond its end counts.
-// With the tick that makes them stale_periods * N (with the period's own last tick where stale_periods is 0) the next
-// period is missing: an event that shows at c+1, and from c+1 on nothing follows until a cut. The register STREAMING is
-// in force from the first clock on in which the card is at rest and no command has come in part. Not thread-safe; no
-// errors are reported.
+// Periods are lines. A line whose N ticks are taken while no path follows continues; each tick beyond its end is
+// counted. The next period is missing with the tick that makes the count stale_periods * N (if stale_periods is 0:
+// with the period's last tick). This event shows at c+1, and from c+1 on no path follows until a cut. The register
+// STREAMING takes effect in the first clock in which the card is at rest and no command has arrived in part. Not
+// thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +21,24 @@ class PositionStreaming {
   struct Inputs {
     bool cut = false;
     Setting setting;
-    bool write = false;       // a halfword of a command comes in
-    bool whole = false;       // it is whole, or dropped
-    bool rest = false;        // nothing is queued or runs
+    bool write = false;       // a halfword of a command arrives
+    bool whole = false;       // the command is complete, or dropped
+    bool rest = false;        // nothing is queued, and nothing runs
     bool begin = false;       // a path begins
-    std::uint64_t ticks = 0;  // with it: of how many
-    bool period = false;      // a period's last tick is taken
-    bool goes_on = false;     // nothing follows in this clock
-    bool stale_tick = false;  // a tick beyond it is taken
+    std::uint64_t ticks = 0;  // with begin: number of ticks of the path
+    bool period = false;      // the last tick of a period is taken
+    bool goes_on = false;     // no path follows in this clock
+    bool stale_tick = false;  // a tick beyond the end of the period is taken
   };
   struct Outputs {
-    bool on = false;          // the mode
+    bool on = false;          // the mode is in force
     bool missing = false;     // event
     bool lost = false;        // the next period was missing; until a cut
-    std::uint32_t ticks = 0;  // beyond the end of the last period that ended
+    std::uint32_t ticks = 0;  // ticks beyond the end of the last period that ended
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
-    bool on = false;  // as the register says
+    bool on = false;  // mode written to STREAMING, in force from the next rest on
     std::uint32_t stale_periods = 0;
     bool inside = false;       // a command has come in part
     std::uint64_t length = 0;  // ticks of the path under way

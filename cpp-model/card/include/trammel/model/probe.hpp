@@ -1,10 +1,10 @@
-// Golden model of the probe: what becomes of a PROBE from its decoding to PROBE_END.
+// Golden model of the probe: what a PROBE does from its decoding to PROBE_END.
 //
-// Off -> Armed (its input was not tripped) -> Ramp (the edge) -> Dropping (at rest) -> Off (PROBE_END is over, which
-// waits until the host has cleared the edge). An input that is tripped at first goes from Off to Dropping. Everything
-// that comes in clock c shows at c+1, but for trips(), touches() and takes(), which are of the clock itself. On a card
-// with captures the first touch asks for the snapshot, before the filter confirms it; what trips without one asks a
-// clock later. Not thread-safe; no errors are reported.
+// Off -> Armed (its input was not tripped) -> Ramp (the edge) -> Dropping (at rest) -> Off (PROBE_END has ended; it
+// waits until the host has cleared the edge). An input that is tripped at first leads from Off to Dropping. Inputs of
+// clock c take effect at c+1, except in trips(), touches() and takes(), which belong to clock c itself. On a card
+// with captures the first touch requests the snapshot, before the filter confirms it; a trip without a touch requests
+// it one clock later. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -18,28 +18,28 @@ class Probe {
   struct Inputs {
     bool cut = false;
     std::uint32_t levels = 0;
-    std::uint32_t raw = 0;    // before their filters
-    std::uint32_t quiet = 0;  // inputs that have stood at their levels for a filter's length
+    std::uint32_t raw = 0;    // levels before the filters
+    std::uint32_t quiet = 0;  // inputs that have kept their levels for a filter's length
     bool waits = false;       // a PROBE is decoded and no path runs
     bool ends = false;        // PROBE_END has begun
     bool at_rest = false;     // the ratio is 0
-    bool stopping = false;    // a fault's ramp
+    bool stopping = false;    // the ramp of a fault is under way
     bool clear = false;       // event: CONTROL.probe_clear
     LoadWord load;
   };
   enum class Mode : std::uint8_t { Off, Armed, Ramp, Dropping };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     Mode mode = Mode::Off;
-    std::uint8_t condition = 0;  // {level, input}, decoded last
-    std::uint8_t armed_for = 0;
-    unsigned waited = 0;  // clocks
+    std::uint8_t condition = 0;  // {level, input} of the condition decoded last
+    std::uint8_t armed_for = 0;  // {level, input} of the PROBE in force
+    unsigned waited = 0;         // clocks for which a PROBE has waited
     bool halt = false;
     bool probed = false;
     bool missed = false;
-    bool touched = false;  // its snapshot is taken
-    bool before = false;   // armed, with its input at the level that trips, before its filter, a clock ago
-    bool late = false;     // what tripped a clock ago asks
+    bool touched = false;  // the snapshot of the touch is taken
+    bool before = false;   // one clock ago: armed, and the raw input at the level that trips
+    bool late = false;     // a trip one clock ago requests its snapshot
   };
   // Clocks without a path from the first one in which a PROBE waits to the one that takes it.
   static constexpr unsigned kSettle = 8;
@@ -78,29 +78,30 @@ class Probe {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // The condition decoded last is met.
+  // True if the condition decoded last is met.
   bool met(std::uint32_t levels) const { return meets(state_.condition, levels); }
-  // The PROBE is taken in this clock. With an edge of the one before it is dropped.
+  // True if the PROBE is taken in this clock. If the edge of the previous PROBE comes in the same clock, it is
+  // dropped.
   bool takes(const Inputs& in) const {
     const bool free = state_.mode == Mode::Off || state_.mode == Mode::Armed;
     return in.waits && state_.waited + 1 >= kSettle && free && !in.stopping && !in.cut;
   }
-  // A snapshot is wanted. Not in the clock of a cut, which has its own under way.
+  // True if a snapshot is requested. None is requested in the clock of a cut, whose own snapshot is under way.
   bool asks(const Inputs& in) const { return touches(in) || (state_.late && !in.cut); }
-  // The probe trips.
+  // True if the probe trips.
   bool trips(const Inputs& in) const { return edges(in) || (takes(in) && met(in.levels)); }
-  // PROBE_END must wait.
+  // True if PROBE_END must wait.
   bool stays(const Inputs& in) const {
     return edges(in) || state_.mode == Mode::Ramp || (state_.mode == Mode::Dropping && state_.probed);
   }
   bool holds() const { return state_.mode == Mode::Ramp; }
-  bool halt() const { return state_.halt; }  // event: what runs ends here
+  bool halt() const { return state_.halt; }  // event: the path and the piece under way end here
   bool drops() const { return state_.mode == Mode::Dropping; }
   bool busy() const { return state_.mode != Mode::Off; }
   bool probed() const { return state_.probed; }
   bool missed() const { return state_.missed; }
 
-  // A touch, the first one since the PROBE or since the input was quiet.
+  // True at a touch, the first one since the PROBE or since the input was quiet.
   bool touches(const Inputs& in) const {
     return first_touch_ && state_.mode == Mode::Armed && meets(state_.armed_for, in.raw) &&
            (!state_.touched || quiet(in)) && !in.stopping && !in.cut;
@@ -118,10 +119,10 @@ class Probe {
   }
 
  private:
-  // Not as the filter passes, before which the input has stood.
+  // Excludes the clock in which the filter passes the touch: the filter calls the input quiet then.
   bool quiet(const Inputs& in) const { return (in.quiet >> (state_.armed_for & 0x1F) & 1) != 0 && !state_.before; }
   static bool meets(std::uint8_t condition, std::uint32_t levels) {
-    constexpr unsigned kInputBits = 5;  // the number of an input; one that the card lacks stays at 0
+    constexpr unsigned kInputBits = 5;  // bits of an input number; an absent input stays at 0
     const std::uint32_t input = condition & ((1U << kInputBits) - 1);
     return (std::uint32_t{levels} >> input & 1) == condition >> kInputBits;
   }

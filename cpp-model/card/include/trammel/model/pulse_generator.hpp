@@ -1,13 +1,13 @@
-// Golden model of the pulse generator: after k ticks of a line the axis stands at floor(1/2 + k * increment / 2^40)
-// pulses from the line's start. Plain 64-bit arithmetic; the card's fixed latencies are delay lines.
+// Golden model of the pulse generator: after k ticks of a line the axis is floor(1/2 + k * increment / 2^40) pulses
+// from the start of the line. Plain 64-bit arithmetic; delay lines model the card's fixed latencies.
 //
-// Source: Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm" (one-shot velocity), with the phase starting at
-// one half. Not thread-safe; no errors are reported: the rules below are the caller's.
+// Source: Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm" (one-shot velocity), with an initial phase of
+// one half. Not thread-safe; no errors are reported: the caller must keep the rules below.
 //
-// A chord takes the next increment and keeps the phase: the sum of increments goes on where it is.
+// A chord takes the next increment and keeps the phase, so the sum of increments continues.
 //
-// Rules, the card's own: swaps and chords at least 3 clocks apart; no load in the 2 clocks after either; no swap, no
-// chord and no count load while `live`; a count is used up by its line and loaded anew for the next.
+// Rules, which the card keeps: swaps and chords are at least 3 clocks apart; no load in the 2 clocks after either; no
+// swap, no chord and no count load while `live`; a line uses up its count, so each counted line needs a new one.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ namespace trammel::model {
 class PulseGenerator {
  public:
   static constexpr int kFractionBits = 40;
-  static constexpr std::uint64_t kOne = std::uint64_t{1} << kFractionBits;  // one pulse a tick, the largest increment
+  static constexpr std::uint64_t kOne = std::uint64_t{1} << kFractionBits;  // one pulse per tick, the largest increment
   static constexpr std::int64_t kMask = static_cast<std::int64_t>(kOne - 1);
-  // An event on its way to the outputs, 4 bits for each clock, the nearest lowest.
+  // An event on its way to the outputs: 4 bits per clock, the nearest event in the lowest bits.
   static constexpr unsigned kStep = 1;
   static constexpr unsigned kBackwards = 2;
-  static constexpr unsigned kEnd = 4;  // the count is made
+  static constexpr unsigned kEnd = 4;  // the count is complete
 
   struct Inputs {
     bool clear = false;  // ends the line, drops the steps in flight; wins over tick and swap in its clock
@@ -33,17 +33,17 @@ class PulseGenerator {
     bool active = false;          // sampled with swap: 0 makes no steps
     bool counted = false;         // sampled with swap: the count ends the line
     bool mirror = false;          // sampled with swap: backwards exactly mirrors forwards
-    bool load_increment = false;  // shifts `word` in; 3 halfwords, lowest first, 42 bits signed, 2^-40 pulses a tick
+    bool load_increment = false;  // shifts `word` in; 3 halfwords, lowest first, 42 bits signed, 2^-40 pulses per tick
     bool load_count = false;      // shifts `word` in; 2 halfwords, lowest first, pulses
     std::uint16_t word = 0;
-    bool chord = false;  // as a swap, of the increment alone: the phase goes on, and so does whether the axis steps
+    bool chord = false;  // swaps the increment only: neither the phase nor whether the axis steps changes
   };
   struct Outputs {
     bool step = false;  // 3 clocks after the tick that made it
-    bool dir = false;   // 1 = negative; of the last step
-    bool live = false;  // a counted axis that has not made its count
+    bool dir = false;   // direction of the last step, 1 = negative
+    bool live = false;  // a counted axis has not completed its count
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::int64_t phase = 0;      // 0..2^40-1, 2^-40 pulses
     std::int64_t increment = 0;  // -2^40..2^40, up to twice as much where an arc's fields contradict each other
@@ -80,13 +80,13 @@ class PulseGenerator {
  private:
   void tick() {
     state_.phase += state_.increment;
-    // A carry or borrow of one; beyond a pulse a tick, which is the host's fault, two at once are none.
+    // A carry or borrow of one. Two at once, beyond one pulse per tick, are an error of the host and make no step.
     const bool crossed = (state_.phase >> kFractionBits & 1) != 0;
     if (crossed && state_.open) {
       unsigned event = state_.phase < 0 ? kStep | kBackwards : kStep;
       if (state_.counted && --state_.count == 0) {
         event |= kEnd;
-        state_.open = false;  // for good: the next line's count may be loaded after it
+        state_.open = false;  // until the next swap; the next line's count may be loaded after it
       }
       state_.pipe |= event << 4;
     }

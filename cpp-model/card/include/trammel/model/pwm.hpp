@@ -1,14 +1,14 @@
 // Golden model of pulse width modulation on two channels of outputs.
 //
-// A channel whose outputs PWM_OUTPUTS names has periods of PWM_PERIOD clocks, and begins each with a pulse. On-times
-// are worked out in turns: the channel's turn is every 256 clocks, its speed is taken in the first of them where its
-// period ends within 511 clocks, and the on-time is there 85 clocks later. A period takes the on-time that came last.
-// What an on-time was worked out from may change meanwhile; then it does not come.
+// A channel whose outputs PWM_OUTPUTS names has periods of PWM_PERIOD clocks; each period begins with a pulse. The
+// channels compute their on-times in turns, and a channel's turn comes every 256 clocks. If its period ends within
+// 511 clocks, the first clock of the turn samples the speed, and the on-time is ready 85 clocks later. A period uses
+// the latest on-time. If the order, the period or the outputs change during the computation, its result is dropped.
 //
-//   u = floor(rate * ratio / 2^17)          2^-31 ticks per clock, 0 where nothing moves
+//   u = floor(rate * ratio / 2^17)          2^-31 ticks per clock, 0 if nothing moves
 //   w = min(u * 2^shift, 2^31 - 1)
-//   d = the duty, or where it follows the least of the duty and floor(half_up(w * gain / 2^17) / 2^13)
-//   on-time = half_up(period * D / 2^16), D = d below 32768, else d + 1
+//   d = duty; if it follows the speed: min(duty, floor(half_up(w * gain / 2^17) / 2^13))
+//   on-time = half_up(period * D / 2^16), D = d below 32768, otherwise d + 1
 //
 // Not thread-safe; no errors are reported.
 #pragma once
@@ -26,17 +26,17 @@ namespace trammel::model {
 class Pwm {
  public:
   static constexpr unsigned kChannels = 2;
-  static constexpr std::uint32_t kFirst = 512;  // clocks to the first period of a channel that begins anew
-  static constexpr unsigned kTurn = 128;        // clocks of a channel's turn
-  static constexpr unsigned kDone = 85;         // from the clock in which the speed is taken
-  static constexpr unsigned kGap = 127;         // clocks for which motion counts after the last one with a path
+  static constexpr std::uint32_t kFirst = 512;  // clocks to the first period of a channel that starts
+  static constexpr unsigned kTurn = 128;        // clocks per turn of a channel
+  static constexpr unsigned kDone = 85;         // clocks from the sampling of the speed to the on-time
+  static constexpr unsigned kGap = 127;         // clocks for which motion still counts after the last clock with a path
   static constexpr std::uint64_t kForever = ~std::uint64_t{0};
 
-  // The speed, and whether a path has it.
+  // The speed, and the conditions under which a path moves at it.
   struct Speed {
     bool runs = false;    // a path is under way
-    bool gives = false;   // a piece is under way, and the drives do not keep its ticks back
-    bool silent = false;  // but it makes no steps
+    bool gives = false;   // a piece is under way, and the drives do not hold its ticks back
+    bool silent = false;  // the piece makes no steps
     std::uint32_t rate = 0;
     std::uint32_t ratio = 0x10000;
   };
@@ -44,11 +44,11 @@ class Pwm {
     Setting setting;
     LoadWord load;
     bool take = false;   // a PWM is taken; its last halfword is on the load bus
-    bool apply = false;  // what waits takes effect
-    bool drop = false;   // or is dropped
+    bool apply = false;  // event: waiting orders take effect
+    bool drop = false;   // event: waiting orders are dropped
     Speed speed;
   };
-  // What a command orders.
+  // The parameters of a PWM command.
   struct Order {
     bool follows = false;
     std::uint8_t shift = 0;
@@ -61,18 +61,18 @@ class Pwm {
     Order order;
     Order waiting;
     bool waits = false;
-    std::uint32_t left = kFirst;  // clocks of the period
-    std::uint32_t on = 0;         // clocks of the pulse
-    std::uint32_t next = 0;       // the on-time that came last
+    std::uint32_t left = kFirst;  // clocks left of the period
+    std::uint32_t on = 0;         // clocks left of the pulse
+    std::uint32_t next = 0;       // the latest on-time
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::array<Channel, kChannels> channels;
     std::uint64_t words = 0;
     bool merges = false;
     unsigned gap = 0;
     unsigned phase = 0;
-    bool busy = false;  // an on-time is on its way
+    bool busy = false;  // an on-time is being computed
     std::uint32_t coming = 0;
   };
 
@@ -104,7 +104,7 @@ class Pwm {
 
   const State& state() const { return state_; }
   State& state() { return state_; }
-  // At the pins. `level`: of the outputs without pulses; `still`: as this clock has the speed.
+  // Levels at the pins. `level`: outputs without pulses; `silent` and `at_rest`: the motion in this clock.
   std::uint16_t pins(std::uint16_t level, bool silent, bool at_rest) const {
     const bool still = !moving(silent) || at_rest;
     unsigned carry = 0;
@@ -117,7 +117,7 @@ class Pwm {
     return static_cast<std::uint16_t>((level & ~low) | (idle_ & low));
   }
 
-  // For so many clocks with these inputs no pin changes, and no speed is taken.
+  // The number of clocks for which these inputs change no pin and sample no speed.
   std::uint64_t quiet_clocks(const Inputs& in) const {
     if (in.take || in.apply || in.drop || in.setting.set || state_.merges) return 0;
     if (in.load.to(load_target::kCommand)) return 0;
@@ -128,7 +128,7 @@ class Pwm {
     for (unsigned n = 0; n < kChannels; ++n) clocks = std::min(clocks, quiet_clocks(n));
     return clocks;
   }
-  // At most quiet_clocks(in) clocks.
+  // Passes `clocks` clocks, at most quiet_clocks(in).
   void pass(const Inputs& in, std::uint64_t clocks) {
     if (clocks == 0) return;
     const unsigned turn = state_.phase % kTurn;
@@ -224,7 +224,7 @@ class Pwm {
     state_.channels[1].outputs = static_cast<std::uint16_t>(setting.data >> 16 & present_);
   }
 
-  // Clocks before the one with which the channel's next turn begins.
+  // Clocks before the one in which the channel's next turn begins.
   std::uint64_t to_turn(unsigned n) const {
     return (n * kTurn + kTurn * kChannels - state_.phase) % (kTurn * kChannels);
   }
@@ -238,7 +238,7 @@ class Pwm {
     }
     std::uint64_t clocks = c.left - 1;
     if (c.on != 0) clocks = std::min<std::uint64_t>(clocks, c.on - 1);
-    // The first turn with the period's end near.
+    // The first turn that finds the end of the period near.
     constexpr std::uint64_t kRound = kTurn * kChannels;
     const std::uint64_t turn = to_turn(n);
     const std::uint64_t rounds = c.left < turn + kFirst ? 0 : (c.left - turn - kFirst) / kRound + 1;

@@ -1,5 +1,5 @@
-// Golden model of the queues' watermarks: a queue is low while fewer halfwords are in it than its watermark says. What
-// room and watermark are in clock c shows at c+2. Not thread-safe; no errors are reported.
+// Golden model of the queues' watermarks: a queue is low while it holds fewer halfwords than its watermark. The
+// outputs of clock c+2 follow from room and watermark in clock c. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class QueueWatermarks {
     bool feed_low = false;
     bool operator==(const Outputs& o) const { return geometry_low == o.geometry_low && feed_low == o.feed_low; }
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint32_t geometry_watermark = 0;
     std::uint32_t feed_watermark = 0;
@@ -44,7 +44,7 @@ class QueueWatermarks {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // What shows two clocks later.
+  // The outputs two clocks later.
   Outputs judged(const Inputs& in) const {
     return {geometry_depth_ - in.geometry_room < state_.geometry_watermark,
             feed_depth_ - in.feed_room < state_.feed_watermark};

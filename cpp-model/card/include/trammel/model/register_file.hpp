@@ -18,8 +18,7 @@ class RegisterFile {
  public:
   static constexpr std::size_t kMaxPorts = 4;
 
-  // Masks of engines: what every card has, what one has by default, and what one that is built with everything there
-  // is.
+  // Masks of engines: those of every card, those of the default card, and all engines.
   static constexpr std::uint32_t kMinEngines = card_map::engines::kLines | card_map::engines::kJerk;
   static constexpr std::uint32_t kDefaultEngines = kMinEngines | card_map::engines::kAccumulator |
                                                    card_map::engines::kDirectMode | card_map::engines::kUnderrunHold |
@@ -41,14 +40,14 @@ class RegisterFile {
     bool build_dirty = false;
     std::uint32_t board_id = 0;
     std::uint32_t ports = 1;   // 1 .. 4
-    std::uint32_t inputs = 4;  // 1 .. 32, of a card with path commands
+    std::uint32_t inputs = 4;  // 1 .. 32; only for cards with path commands
     std::uint32_t outputs = 4;
-    std::uint32_t captures = 4;    // units, of a card with captures
-    std::uint32_t idle_level = 0;  // {second pins, first pins}, a bit an axis each
+    std::uint32_t captures = 4;    // units; only for cards with captures
+    std::uint32_t idle_level = 0;  // {second pins, first pins}, a bit per axis each
   };
 
   struct Inputs {
-    // the access; `request` for one clock, the next at the earliest in the clock after `ack`
+    // the access; `request` is high for one clock, and comes again at the earliest in the clock after `ack`
     bool request = false;
     bool write = false;
     bool partial = false;
@@ -64,38 +63,38 @@ class RegisterFile {
     bool feed_active = false;
     bool ended = false;
     bool stopping = false;
-    bool underrun = false;  // held by it, or a piece waits for more
+    bool underrun = false;  // an under-run hold is active, or a piece waits for more commands
     std::uint32_t underruns = 0;
-    bool stale = false;  // a line goes on beyond its period
+    bool stale = false;  // a line continues beyond its period
     std::uint32_t stale_ticks = 0;
     std::uint32_t limit_state = 0;
     std::uint32_t place = 0;
     bool button_hold = false;
-    bool enabled = false;             // the drives are
-    bool enable_waits = false;        // motion waits for that
-    bool incomplete = false;          // the stream stands inside a command
+    bool enabled = false;             // the drives are enabled
+    bool enable_waits = false;        // motion waits for the drives
+    bool incomplete = false;          // the stream is inside a command
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;
-    bool geometry_low = false;  // below its watermark
+    bool geometry_low = false;  // the queue is below its watermark
     bool probed = false;
     bool probe_missed = false;
-    bool waiting = false;  // for an input
+    bool waiting = false;  // the card waits for an input
     bool feed_low = false;
     std::uint32_t geometry_begun = 0;
     std::uint32_t feed_begun = 0;
     std::uint32_t rate = 0;   // 2^-32 feed ticks an enabled clock
     std::uint32_t ratio = 0;  // 2^-16, 17 bits
     std::array<std::uint32_t, card_map::kMaxAxes> position{};
-    std::uint32_t fault = 0;       // FAULT as it stands
+    std::uint32_t fault = 0;       // the value of FAULT
     bool settled = false;          // nothing moves, and no tick is on its way
-    std::uint64_t ticks_left = 0;  // of the path under way
-    bool stop = false;             // events that ask for a snapshot: the first cause of a stop,
-    bool rest = false;             // its end,
-    bool probe = false;            // the probe's edge,
-    bool mark = false;             // a MARK,
-    std::uint8_t captures = 0;     // and levels: the capture units that want one
-    std::uint8_t passed = 0;       // likewise: those that hand a capture on to the queue,
-    std::uint8_t edges = 0;        // of an edge to this level
+    std::uint64_t ticks_left = 0;  // ticks left of the path under way
+    bool stop = false;             // event, requests a snapshot: the first cause of a stop
+    bool rest = false;             // event, requests a snapshot: the end of a stop
+    bool probe = false;            // event, requests a snapshot: the probe's edge
+    bool mark = false;             // event, requests a snapshot: a MARK
+    std::uint8_t captures = 0;     // levels: the capture units that request a snapshot
+    std::uint8_t passed = 0;       // levels: the capture units that hand a capture on to the queue
+    std::uint8_t edges = 0;        // bit per unit: its edge led to the active level
     std::uint32_t capture_state = 0;
     std::uint32_t inputs = 0;
     std::uint32_t raw_inputs = 0;
@@ -114,12 +113,12 @@ class RegisterFile {
     std::uint16_t loader_address = 0;  // words, 10 bits
   };
 
-  // Events and `setting.set` are high in the clock of `ack`, `flush` a clock earlier (never with `abort`).
+  // Events and `setting.set` are high in the clock of `ack`; `flush` is high one clock earlier (never with `abort`).
   struct Outputs {
     bool ack = false;
     bool error = false;
     std::uint32_t data = 0;
-    Setting setting;  // address and data mean something with `set`
+    Setting setting;  // address and data are valid with `set`
     std::uint32_t clear_fault = 0;
     bool irq = false;
     bool stream_write = false;
@@ -129,17 +128,17 @@ class RegisterFile {
     bool flush = false;
     bool start = false;
     std::uint8_t start_mask = 0;
-    bool loader_valid = false;  // no port: whether `loader_data` answers the loader; unspecified otherwise
+    bool loader_valid = false;  // not a port: `loader_data` answers the loader; otherwise it is undefined
     std::uint32_t loader_data = 0;
-    bool strobe = false;  // the snapshot takes what the inputs of this clock are
+    bool strobe = false;  // the snapshot takes the inputs of this clock
   };
   enum class Stage { Idle, Decode, Wait, Act, Respond, Sent, Judge, Load };
-  using Values = std::array<std::uint32_t, card_map::kMaxAxes + 8>;  // of an area, by words
+  using Values = std::array<std::uint32_t, card_map::kMaxAxes + 8>;  // an area, by words
   struct LoaderRead {
     bool valid = false;
     std::uint32_t data = 0;
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     Outputs out;
     std::uint64_t time = 0;
@@ -155,17 +154,17 @@ class RegisterFile {
     card_map::Slot slot{nullptr, 0};
     card_map::Reason reason = card_map::Reason::None;
     std::uint32_t answer = 0;
-    bool word_refused = false;      // by the checker
-    std::uint8_t stream_owner = 0;  // port that the command under way belongs to
-    bool snapshot_asked = false;    // by CONTROL, in this clock
+    bool word_refused = false;      // the checker has refused the word
+    std::uint8_t stream_owner = 0;  // port of the command under way
+    bool snapshot_asked = false;    // CONTROL requests a snapshot in this clock
     std::array<std::uint32_t, card_map::kWindowBytes / 4>
-        stored{};  // whatever reads back: constants, settings, latched values
+        stored{};  // all that can be read back: constants, settings, latched values
     std::uint32_t irq_enable = 0;
     SnapshotWriter snapshot{1};
     LinkWatch link{};
     Values latched{};
     CaptureFifo queue{};
-    std::array<std::uint32_t, kMaxPorts> refusal{};  // as the register reads; a reason is never 0
+    std::array<std::uint32_t, kMaxPorts> refusal{};  // by port, as the register reads; a reason is never 0
     bool loading = false;
     LoaderRead loader_read;
   };
@@ -179,7 +178,7 @@ class RegisterFile {
   void clock(const Inputs& in);
 
   const Outputs& outputs() const { return state_.out; }
-  // Whether a unit of LINK_TIMEOUT passes in the clock at `time`: as time is written down, two clocks late.
+  // True if a unit of LINK_TIMEOUT passes in the clock `time`. The card sees its clock counter two clocks late.
   static bool link_unit(std::uint64_t time) {
     return ((time - 2) >> LinkWatch::kUnitBits & 1) != ((time - 3) >> LinkWatch::kUnitBits & 1);
   }
@@ -187,16 +186,16 @@ class RegisterFile {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // STATUS with these inputs, as the interrupt and lockstep see it: refused on any port.
+  // STATUS with these inputs, as the interrupt and lockstep see it: `refused` means a refusal on any port.
   std::uint32_t status(const Inputs& in) const;
-  // The capture units that are told in this clock that their snapshot is taken.
+  // The capture units that learn in this clock that their snapshot is taken.
   std::uint8_t captured(std::uint8_t captures) const { return state_.snapshot.captured(captures); }
-  // Likewise, that the capture they hand on is in the queue, or lost.
+  // The capture units that learn in this clock that their capture is in the queue, or lost.
   std::uint8_t queued(std::uint8_t passed) const { return CaptureFifo::queued(passed); }
-  // What `irq` shows a clock later.
+  // The level of `irq` one clock later.
   bool interrupt(const Inputs& in) const;
 
-  // After a reset the registers are filled, and no snapshot can be taken.
+  // True while the registers are filled after a reset. No snapshot can be taken then.
   bool filling() const;
 
   // Clocks since reset.

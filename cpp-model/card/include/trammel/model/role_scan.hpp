@@ -1,6 +1,6 @@
-// Golden model of the scan of roles, rtl/io/role_scan.sv. A role is active while one of the inputs that its mask names
-// is; the scan looks at one of 64 roles a clock, by the mask that was set two clocks before. Not thread-safe; no errors
-// are reported.
+// Golden model of the scan of roles, rtl/io/role_scan.sv. A role is active while at least one of the inputs in its
+// mask is active. The scan looks at one of 64 roles per clock, with the mask of two clocks before. Not thread-safe;
+// no errors are reported.
 #pragma once
 
 #include <array>
@@ -13,26 +13,26 @@ namespace trammel::model {
 class RoleScan {
  public:
   static constexpr unsigned kRoles = 64;  // 8 * kind + axis; a scan takes as many clocks
-  // Nothing changes at levels and masks that have been the same for so long: each role was looked at, by its mask.
+  // After this many clocks with constant levels and masks nothing changes: each role was looked at with its mask.
   static constexpr unsigned kSettled = kRoles + 2;
-  // Kinds of which each axis has one, and the card's own roles.
+  // The kinds of role that exist per axis, and the card's own roles.
   static constexpr unsigned kLimitMinus = 0, kLimitPlus = 1, kDriveFault = 4;
   static constexpr unsigned kProbe = 48, kToolSetter = 49, kFeedHold = 50, kCycleStart = 51;
 
   struct Inputs {
     std::uint32_t levels = 0;    // bit n: input n, filtered
-    bool set = false;            // not within kRoles clocks after a reset
+    bool set = false;            // never within kRoles clocks after a reset
     unsigned set_role = 0;       // 0 to 63
-    std::uint32_t set_mask = 0;  // of inputs that the card has
+    std::uint32_t set_mask = 0;  // inputs of the card, a bit each
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
-    unsigned clock = 0;  // of the scan, 0 to 63
+    unsigned clock = 0;  // clock of the scan, 0 to 63
     bool clearing = true;
     InputRoles roles;
     std::array<std::uint32_t, kRoles> masks{};
-    std::array<std::uint32_t, 2> mask_read{};  // by the RAM and by the register behind it
-    // Clocks since the levels or a mask changed, up to kSettled; follows from the rest.
+    std::array<std::uint32_t, 2> mask_read{};  // mask at the RAM's output, and in the register behind it
+    // Clocks since the levels or a mask changed, up to kSettled. Derived from the other state.
     std::uint32_t last_levels = 0;
     unsigned same = 0;
   };
@@ -56,7 +56,7 @@ class RoleScan {
     state_.clock = (state_.clock + 1) % kRoles;
   }
 
-  // Neither levels nor masks nor roles change with these inputs.
+  // True if levels, masks and roles do not change with these inputs.
   bool settled(const Inputs& in) const { return state_.same == kSettled && !in.set && in.levels == state_.last_levels; }
   const InputRoles& roles() const { return state_.roles; }
   const State& state() const { return state_; }

@@ -1,9 +1,11 @@
-// Golden model of the snapshot's sequence: who is served when (docs/developer/architecture.md, Registers).
+// Golden model of the snapshot writer: the order in which it serves requests (docs/developer/architecture.md,
+// Registers).
 //
-// A request in clock r strobes in r+1 and keeps the RAM from r+1 to r+axes+11. The stop's, its rest's and the probe's
-// break into any other's, a MARK's into the host's, but not where that is taken anew already. The host's is then taken
-// anew in the clock after the last; a MARK's, or one that had to wait, follows when the RAM was free for a clock. A
-// capture's breaks into none, and follows likewise; its unit asks until it is told. One instance for each card; not
+// A request in clock r strobes in r+1 and occupies the RAM from r+1 to r+axes+11. Requests of a stop, of its rest and
+// of the probe interrupt any snapshot. A MARK's request interrupts the host's snapshot, unless that one is being
+// repeated. An interrupted host snapshot is repeated in the clock after the end of the other one. A MARK's snapshot
+// that was interrupted or had to wait follows when the RAM has been free for one clock. A capture's request
+// interrupts nothing and waits in the same way; its unit requests until it is told. One instance per card; not
 // thread-safe.
 #pragma once
 
@@ -25,7 +27,7 @@ class SnapshotWriter {
     bool rest = false;
     bool probe = false;
     bool mark = false;
-    std::uint8_t captures = 0;  // a bit for each unit that wants its snapshot
+    std::uint8_t captures = 0;  // a bit per unit: it requests its snapshot
   };
   // One rising edge, with the requests of the clock that it ends.
   void clock(const Requests& in) {
@@ -54,20 +56,21 @@ class SnapshotWriter {
     }
   }
 
-  // Values and time of this clock are the snapshot's.
+  // The snapshot takes the values and the time of this clock.
   bool strobe() const { return strobe_; }
-  // STATUS.snapshot: the RAM is taken.
+  // STATUS.snapshot: the RAM is occupied.
   bool busy() const { return left_ != 0; }
-  // A request has not begun.
+  // True if a request of the host or of a MARK has not begun.
   bool waits() const { return host_waits_ || mark_waits_; }
   card_map::Area area() const { return area_; }
-  // The units, a bit each, that are told in this clock that their snapshot is in the area, where these ask in it.
+  // The units, a bit each, that learn in this clock that their snapshot is in the area. `captures`: the units that
+  // request in this clock.
   std::uint8_t captured(std::uint8_t captures) const {
     const std::uint32_t bit = 1U << unit_;
     return static_cast<std::uint8_t>(left_ == 1 && capture_ && wanted_ ? captures & bit : 0U);
   }
-  // The words of the area are written a word a clock: the number of the one that is written in this clock, from 0; else
-  // none. What breaks in comes too late for it.
+  // The area is written at one word per clock. Returns the number of the word that is written in this clock, from 0,
+  // or none. A request that interrupts in this clock does not prevent the write.
   std::optional<std::uint32_t> word() const {
     if (left_ < 2 || left_ > length_ - 2) return std::nullopt;
     return length_ - 2 - left_;
@@ -87,13 +90,13 @@ class SnapshotWriter {
   }
 
   std::uint32_t length_;
-  std::uint32_t left_ = 0;  // clocks for which the RAM is still taken
+  std::uint32_t left_ = 0;  // clocks for which the RAM is still occupied
   bool strobe_ = false;
   bool host_waits_ = false;
   bool mark_waits_ = false;
-  bool again_ = false;    // the host's is taken anew
-  bool capture_ = false;  // the snapshot under way, or the last one, is a capture's
-  bool wanted_ = false;   // its unit has asked all the while
+  bool again_ = false;    // the host's snapshot is being repeated
+  bool capture_ = false;  // the snapshot under way, or the last one, is that of a capture
+  bool wanted_ = false;   // its unit has requested it without a break
   unsigned unit_ = 0;
   card_map::Area area_ = card_map::Area::Snap;
 };

@@ -1,11 +1,11 @@
-// Golden model of the soft limits: a pulse that leaves an axis beyond an end of its range, on the side to which it
-// went, is a cause of a stop. Positions count modulo 2^32: an end is judged right while the axis stands less than 2^31
-// pulses away from it.
+// Golden model of the soft limits: a pulse that leaves an axis beyond the end of its range towards which it moved is
+// a cause of a stop. Positions count modulo 2^32: an end is judged correctly while the axis is less than 2^31 pulses
+// away from it.
 //
-// One axis is looked at in each clock, in a round of 4, or of 8 with more than 4 axes. The end on the side of its last
-// pulse was read a clock before; where the axis has turned since, it waits for the next round. An axis that is looked
-// at in clock c, a pulse having come since the last time, is a cause at c+2 and in FAULT and LIMIT_STATE at c+3. Not
-// thread-safe; no errors are reported.
+// Each clock looks at one axis, in rounds of 4, or of 8 with more than 4 axes. The end on the side of the axis's last
+// pulse was read one clock before; if the axis has turned since, it waits for the next round. If an axis that is
+// looked at in clock c has made a pulse since the previous look, and is beyond that end, it is a cause at c+2 and in
+// FAULT and LIMIT_STATE at c+3. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ namespace trammel::model {
 class SoftLimits {
  public:
   struct Inputs {
-    std::uint8_t counts = 0;  // a bit an axis: a pulse begins, and the position has it in the next clock
-    std::uint8_t back = 0;    // with it: backwards
+    std::uint8_t counts = 0;  // a bit per axis: a pulse begins; the position includes it in the next clock
+    std::uint8_t back = 0;    // with `counts`: the pulse is negative
     std::array<std::uint32_t, card_map::kMaxAxes> position{};
     bool clear = false;  // event: FAULT.soft_limit is cleared
     Setting setting;     // SOFT_LIMITS; SOFT_MINUS and SOFT_PLUS of each axis
@@ -28,20 +28,20 @@ class SoftLimits {
   struct Cause {
     bool any = false;
     std::uint8_t axis = 0;
-    bool back = false;  // at its negative end
+    bool back = false;  // the axis is beyond its negative end
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::array<std::array<std::uint32_t, 2>, card_map::kMaxAxes> ends{};  // negative, positive
     std::uint8_t has = 0;                                                 // SOFT_LIMITS
-    std::uint8_t moved = 0;                                               // axes with a pulse since they were looked at
-    std::uint8_t back = 0;                                                // of the last pulse
+    std::uint8_t moved = 0;                                               // axes with a pulse since the last look
+    std::uint8_t back = 0;                                                // axes whose last pulse was negative
     unsigned phase = 0;                                                   // the axis whose end is read
-    std::uint32_t end = 0;                                                // as read
-    bool end_back = false;                                                // it is the negative one
+    std::uint32_t end = 0;                                                // the end that was read
+    bool end_back = false;                                                // the end that was read is the negative one
     Cause judged;
     Cause cause;
-    bool named = false;       // since FAULT.soft_limit was cleared
+    bool named = false;       // a cause was reported since FAULT.soft_limit was cleared
     std::uint32_t shown = 0;  // LIMIT_STATE
   };
 
@@ -60,7 +60,7 @@ class SoftLimits {
     if (in.setting.set) set(in.setting);
   }
 
-  // The part of a clock that is of the round alone.
+  // The part of clock() that belongs to the scan only.
   void look(std::uint8_t counts) {
     const unsigned done = judges() ? 1U << looked_at() : 0;
     const unsigned read = state_.phase;
@@ -75,7 +75,7 @@ class SoftLimits {
   bool cause() const { return state_.cause.any; }
   std::uint32_t limit_state() const { return state_.shown; }
   unsigned round() const { return axes_ > 4 ? 8 : 4; }  // clocks
-  // Whether a pulse that brings an axis here is one too far.
+  // True if a pulse that brings the axis to `position` is beyond the end.
   bool too_far(unsigned axis, std::uint32_t position, bool back) const {
     return bit(state_.has, axis) && beyond(position, state_.ends[axis][back ? 0 : 1], back);
   }
@@ -83,14 +83,14 @@ class SoftLimits {
  private:
   static bool bit(unsigned mask, unsigned n) { return (mask >> n & 1) != 0; }
   static bool beyond(std::uint32_t position, std::uint32_t end, bool back) {
-    const std::uint32_t left = back ? position - end : end - position;  // to the end; negative beyond it
+    const std::uint32_t left = back ? position - end : end - position;  // pulses to the end; negative beyond it
     return static_cast<std::int32_t>(left) < 0;
   }
   unsigned present() const { return (1U << axes_) - 1; }
   unsigned looked_at() const { return (state_.phase + round() - 1) % round(); }
   bool judges() const { return bit(state_.moved, looked_at()) && bit(state_.back, looked_at()) == state_.end_back; }
 
-  // LIMIT_STATE, as FAULT takes the cause.
+  // LIMIT_STATE changes in the clock in which FAULT takes the cause.
   void show(bool clear) {
     if (clear) {
       state_.named = false;

@@ -23,8 +23,8 @@ class SpiPort {
     bool miso = true;
     bool miso_enable = false;
     bool byte_valid = false;  // event
-    std::uint8_t byte = 0;    // with it
-    bool ready = false;       // event: the byte offered is taken
+    std::uint8_t byte = 0;    // valid with byte_valid
+    bool ready = false;       // event: the offered byte is taken
   };
 
   void reset() { *this = SpiPort(); }
@@ -41,7 +41,7 @@ class SpiPort {
       taken_ = static_cast<std::uint8_t>(unsigned{taken_} << 1 | (pins.mosi ? 1U : 0U));
       ++place_;
     }
-    // A byte that was begun is not given from its beginning again: the frame in it is lost anyway.
+    // After an interruption by CS, a byte that was begun is not sent again from its start: its frame is lost anyway.
     if (rises_) bits_ = out_.ready ? 0 : bits_ + 1;
     if (pins.cs_n) bits_ = 0;
     out_.miso = place_ < 8 && (given_ >> (7 - place_) & 1) != 0;
@@ -56,10 +56,10 @@ class SpiPort {
 
  private:
   Pins first_;
-  Pins second_;  // two clocks ago
+  Pins second_;  // levels two clocks ago; `first_`: one clock ago
   bool rises_ = false;
-  unsigned bits_ = 0;   // taken since the byte began
-  unsigned place_ = 0;  // bits of `given_` that are gone
+  unsigned bits_ = 0;   // bits taken since the byte began
+  unsigned place_ = 0;  // bits of `given_` that were sent
   std::uint8_t taken_ = 0;
   std::uint8_t given_ = frames::kEnd;
   Outputs out_;

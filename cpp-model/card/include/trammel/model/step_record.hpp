@@ -1,7 +1,8 @@
-// The record of steps: which command and tick a path step belongs to, and which pin moved when. No part of the card.
+// The record of steps: finds the command and tick of each path step, and the time of each step at the pins. Not a
+// part of the card.
 //
-// Commands are counted as the checker accepts them, and taken up as they begin; ticks as they are taken. A path step
-// shows 7 clocks after its tick. Not thread-safe.
+// Commands get their numbers when the checker accepts them and become current when they begin; ticks count as they
+// are taken. A path step shows 7 clocks after its tick. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -16,25 +17,25 @@ namespace trammel::model {
 class CardSteps {
  public:
   virtual ~CardSteps() = default;
-  // A step at the pins of `axis`; `cycle` counts rising edges since reset, that of the leading edge included.
+  // A step at the pins of `axis`; `cycle` counts rising edges since reset, including that of the leading edge.
   virtual void pin_step(std::uint64_t cycle, unsigned axis, int direction) = 0;
-  // A step of the path, at its shaper after edge `cycle`. `command`: number in the stream, from 0 at reset or a cut,
-  // not wrapped, barriers and feed pieces counted; 0 in direct mode. `tick`: of its path, from 1; feed ticks of a line
-  // (enabled clocks in direct mode), path ticks of an arc.
+  // A step of the path; it is at its shaper after edge `cycle`. `command`: number in the stream, from 0 at reset or a
+  // cut, not wrapped; barriers and feed pieces count; 0 in direct mode. `tick`: number in its path, from 1, of feed
+  // ticks for a line (enabled clocks in direct mode) and of path ticks for an arc.
   virtual void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
                          int direction) = 0;
-  // Outputs after edge `cycle`, where they are not what they were.
+  // The outputs after edge `cycle`, if they have changed.
   virtual void outputs(std::uint64_t /*cycle*/, std::uint16_t /*before*/, std::uint16_t /*levels*/) {}
 };
 
 class StepRecord {
  public:
   static constexpr std::uint64_t kTickToStep = 7;  // clocks from a tick that shows to its step on the path
-  static constexpr std::uint64_t kToAxes = 3;      // of these, to where it leaves for the axes
+  static constexpr std::uint64_t kToAxes = 3;      // the part of them until the tick leaves for the axes
 
   void set_steps(CardSteps* steps) { steps_ = steps; }
 
-  // All but the receiver as after reset; `output_idle`: levels of the outputs then.
+  // Resets everything except the receiver; `output_idle`: levels of the outputs in reset.
   void reset(std::uint16_t output_idle) {
     accepted_ = command_ = taken_ = arc_taken_ = 0;
     geometry_.clear();
@@ -61,8 +62,8 @@ class StepRecord {
   // A tick shows after edge `cycle`.
   void tick(std::uint64_t cycle) { place(cycle, ++taken_); }
   void arc_tick() { ++arc_taken_; }
-  // A path tick of an arc in chords shows after edge `cycle`, on its way to the axes, where a line's comes kToAxes
-  // clocks after it was taken.
+  // A path tick of an arc in chords shows after edge `cycle`, on its way to the axes. A line's tick reaches the same
+  // place kToAxes clocks after it was taken.
   void chord_tick(std::uint64_t cycle) { place(cycle - kToAxes, ++arc_taken_); }
 
   void pin(std::uint64_t cycle, unsigned axis, std::uint32_t position) {
@@ -83,7 +84,8 @@ class StepRecord {
     if (steps_ != nullptr) steps_->path_step(cycle, command_, arc_taken_, axis, backwards ? -1 : 1);
   }
 
-  // For jumps: ticks of the present path taken so far; `ticks` more at once; the tick that shows after edge `cycle`.
+  // For jumps. taken(): ticks of the present path so far; take(): adds more at once; place(): sets the tick that
+  // shows after edge `cycle`.
   std::uint64_t taken() const { return taken_; }
   void take(std::uint64_t ticks) { taken_ += ticks; }
   std::uint64_t path_ticks() const { return arc_taken_; }
@@ -98,14 +100,14 @@ class StepRecord {
   Take& shown_after(std::uint64_t cycle) { return takes_[static_cast<std::size_t>(cycle % takes_.size())]; }
 
   CardSteps* steps_ = nullptr;                                // not owned
-  std::uint64_t accepted_ = 0;                                // commands that the checker let in
-  std::deque<std::uint64_t> geometry_;                        // numbers of those in the geometry queue
-  std::uint64_t command_ = 0;                                 // begun last
-  std::uint64_t taken_ = 0;                                   // ticks of the path
-  std::uint64_t arc_taken_ = 0;                               // path ticks of the arc
+  std::uint64_t accepted_ = 0;                                // commands that the checker has accepted
+  std::deque<std::uint64_t> geometry_;                        // numbers of the commands in the geometry queue
+  std::uint64_t command_ = 0;                                 // number of the command that began last
+  std::uint64_t taken_ = 0;                                   // ticks of the path taken so far
+  std::uint64_t arc_taken_ = 0;                               // path ticks of the arc taken so far
   std::array<Take, 16> takes_{};                              // by the cycle in which the tick shows
-  std::array<std::uint32_t, card_map::kMaxAxes> position_{};  // as shown
-  std::uint16_t outputs_ = 0;                                 // as shown
+  std::array<std::uint32_t, card_map::kMaxAxes> position_{};  // positions as reported
+  std::uint16_t outputs_ = 0;                                 // levels as reported
 };
 
 }  // namespace trammel::model

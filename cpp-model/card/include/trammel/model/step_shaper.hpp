@@ -1,10 +1,11 @@
-// Golden model of the step shaper: pulses with the drive's times at the pins, and the position that the pins show.
+// Golden model of the step shaper: makes pulses with the drive's times at the pins, and counts the position that the
+// pins show.
 //
-// Rules: the phases pulse, space, hold and setup last their time + 3 clocks. The pin is high for max(1, length) of
-// them, from the third clock of the pulse's phase on. After the space the next pulse's phase begins, or else the
-// direction's hold (a waiting step in DIR's direction cuts it short). After the hold DIR may turn, and the setup
-// begins, then the pulse it turned for. Pins are one clock after all that. Not thread-safe; faults are reported by
-// outputs().fault.
+// Rules: the phases pulse, space, hold and setup last their time + 3 clocks. The pin is high for max(1, length)
+// clocks, from the third clock of the pulse phase on. After the space comes the next pulse phase, or else the
+// direction hold (a waiting step in DIR's direction ends it early). After the hold DIR may turn; then the setup
+// follows, and then the pulse for which DIR turned. The pins are one clock later than all this. Not thread-safe;
+// faults are reported by outputs().fault.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ class StepShaper {
     std::uint16_t dir_setup = 0;    // clocks
     std::uint16_t dir_hold = 0;     // clocks
     std::uint8_t mode = 0;          // [1:0] 0 step/dir, 1 up/down, 2 or 3 quadrature; [2] inverts step, [3] dir
-    bool wait_tick = false;         // one clock in HOLD_LIMIT
+    bool wait_tick = false;         // a tick every HOLD_LIMIT clocks
   };
   struct Outputs {
     bool step = false;           // pin
@@ -33,27 +34,27 @@ class StepShaper {
     bool fault = false;          // event: a step was lost, or waited from one wait tick to the next
   };
   enum class Phase : std::uint8_t { kRest, kSetup, kHigh, kSpace };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     Phase phase = Phase::kRest;
-    std::uint32_t left = 0;  // clocks of the phase after this one
-    bool back = false;       // DIR
-    unsigned lead = 0;       // 3 as a pulse's phase begins, 1 in the pulse's first clock
-    bool seen_same = false;  // what was waiting a clock ago
-    bool seen_other = false;
-    bool waited = false;
-    bool pulse = false;  // at the pin
-    std::uint8_t waiting = 0;
-    std::uint8_t backs = 0;
+    std::uint32_t left = 0;    // clocks left of the phase after this clock
+    bool back = false;         // level of DIR: negative
+    unsigned lead = 0;         // 3 as a pulse phase begins, 1 in the first clock of the pulse
+    bool seen_same = false;    // one clock ago the oldest waiting step had DIR's direction
+    bool seen_other = false;   // one clock ago it had the other direction
+    bool waited = false;       // it was waiting at the last wait tick
+    bool pulse = false;        // at the pin
+    std::uint8_t waiting = 0;  // number of waiting steps
+    std::uint8_t backs = 0;    // their directions, the youngest in bit 0
     std::uint8_t mode = 0;
     Outputs out;
 
-    // A pulse begins: the position has it in the next clock.
+    // A pulse begins: the position includes it in the next clock.
     bool begins() const { return lead == 1; }
   };
 
   StepShaper() = default;
-  // `idle_level`: strap, {second pin, first pin}; MODE begins with these bits as its inversions.
+  // `idle_level`: strap, {second pin, first pin}; its bits are the initial inversions of MODE.
   explicit StepShaper(unsigned idle_level) {
     state_.mode = static_cast<std::uint8_t>((idle_level & 3) << 2);
     state_.out.step = (idle_level & 1) != 0;
@@ -94,7 +95,7 @@ class StepShaper {
   State& state() { return state_; }
 
  private:
-  // A phase of t takes t + 3 clocks.
+  // A phase with time t lasts t + 3 clocks.
   void enter(Phase phase, std::uint16_t time) {
     state_.phase = phase;
     state_.left = std::uint32_t{time} + 2;
@@ -112,7 +113,7 @@ class StepShaper {
       state_.waited = state_.waiting != 0;
   }
 
-  // The directions that wait, the youngest in bit 0.
+  // Stores the direction of a step that must wait.
   void queue(const Inputs& in, bool served) {
     if (served) --state_.waiting;
     if (!in.step || state_.waiting == kPlaces) return;
@@ -120,11 +121,11 @@ class StepShaper {
     ++state_.waiting;
   }
 
-  // Pins, position and busy follow the state before this clock.
+  // Pins, position and busy follow the state from before this edge.
   void show(const Inputs& in) {
     const bool begins = state_.begins();
     if (begins) state_.out.position += state_.back ? ~std::uint32_t{0} : 1U;
-    // The first two clocks of the pulse's phase are low still, the last is low already.
+    // The pin is still low in the first two clocks of the pulse phase, and low again in the last one.
     const bool pulse = state_.phase == Phase::kHigh && (begins || (state_.lead == 0 && state_.left != 0));
     state_.pulse = pulse;
     bool first = pulse;

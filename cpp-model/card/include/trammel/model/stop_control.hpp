@@ -1,9 +1,10 @@
-// Golden model of the stop control: every cause of a stop, in one place. FAULT remembers causes; the card is in RUN,
-// ramps to a stop (RAMP), takes no ticks any more and waits for what is on its way to the pins (CLOSING), or stands
-// until FAULT is clear (STOPPED). A cut drops queues, paths and everything decoded; it ends CLOSING, or is an abort's.
+// Golden model of the stop control: every cause of a stop, in one place. FAULT stores the causes. The card runs
+// (RUN), ramps to a stop (RAMP), takes no more ticks and waits until everything on its way has reached the pins
+// (CLOSING), or is stopped until FAULT is clear (STOPPED). A cut drops queues, paths and all decoded commands; it
+// ends CLOSING, or follows an abort.
 //
-// What comes in clock c shows at c+1: fault, cut, stop, stopping. hold and closed follow the state a clock later.
-// Not thread-safe; no errors are reported.
+// Inputs of clock c take effect at c+1 in fault, cut, stop and stopping; hold and closed follow the mode one clock
+// later. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,7 @@ class StopControl {
     std::uint32_t step_fault = 0;  // events, by axis
     bool mismatch = false;         // event
     bool incomplete = false;       // event
-    bool missing = false;          // event: of position streaming
+    bool missing = false;          // event: a period is missing in position streaming
     bool expired = false;          // level: the watchdog has expired
     bool link_lost = false;        // level
     bool emergency = false;        // level: the emergency stop
@@ -30,32 +31,32 @@ class StopControl {
     std::uint32_t clear = 0;       // event: ones written to FAULT
     bool at_rest = false;          // the ratio is 0
     bool moving = false;           // pieces are giving ticks
-    bool fixed = false;            // the present one is fixed
-    bool underrun = false;         // what is queued ends: neither a fault nor a cut
-    bool probe = false;            // a probe has tripped: likewise
-    bool button = false;           // the feed hold button holds, as HOLD does
+    bool fixed = false;            // the piece under way is of class fixed
+    bool underrun = false;         // an under-run hold, which is neither a fault nor a cut
+    bool probe = false;            // a tripped probe holds, which is neither a fault nor a cut
+    bool button = false;           // the feed hold button holds, like HOLD
     bool take = false;             // a tick is taken in this clock
-    bool quiet = true;             // no path tick is on its way to an engine, none makes a step
+    bool quiet = true;             // no path tick is on its way to an engine, and none makes a step
     bool pulses = false;           // an axis is busy
     bool busy = false;             // something runs or is queued
     Setting setting;               // HOLD, STOP_REACTION
   };
   struct Outputs {
     std::uint32_t fault = 0;
-    bool hold = false;      // of the time base
+    bool hold = false;      // the time base must hold
     bool cut = false;       // event
     bool stop = false;      // event: the first cause of a stop
-    bool closed = false;    // neither command nor START is taken
-    bool stopping = false;  // the way to a stop
+    bool closed = false;    // neither commands nor START are accepted
+    bool stopping = false;  // a ramp or the closing is under way
   };
   enum class Mode : std::uint8_t { Run, Ramp, Closing, Stopped };
-  // So many clocks nothing has moved: the card is settled.
+  // The card is settled after this many clocks in which nothing moved.
   static constexpr unsigned kSettleClocks = 31;
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     Mode mode = Mode::Run;
     unsigned settled = 0;  // clocks in which nothing moved, up to kSettleClocks
-    bool hold = false;     // the register
+    bool hold = false;     // the register HOLD
     bool hold_stays = false;
     bool made_to_hold = false;
     std::uint32_t reaction = card_map::field::kStopReactionDriveFault | card_map::field::kStopReactionWatchdog |
@@ -72,7 +73,7 @@ class StopControl {
     state_.hold_stays = stays(in);
     state_.out.hold = asked_hold(in) || state_.made_to_hold || state_.mode == Mode::Ramp || (closing() && in.at_rest);
     state_.out.closed = state_.out.fault != 0 || state_.mode != Mode::Run;
-    // An abort on the way to a fault's cut shuts the gate alone.
+    // An abort during a fault's ramp does not cut at once: it begins CLOSING, which ends with the fault's cut.
     state_.out.cut = finished() || (in.abort && (stopped() || (state_.mode == Mode::Run && events == 0)));
     const unsigned settled = counts(in) ? std::min(state_.settled + 1, kSettleClocks) : 0;
     const Mode next = next_mode(in, events != 0, at_once);
@@ -90,19 +91,19 @@ class StopControl {
   bool stopped() const { return state_.mode == Mode::Stopped; }
   bool closing() const { return state_.mode == Mode::Closing; }
   bool shut() const { return closing() || stopped(); }  // no tick is taken
-  // The snapshot REST is asked for in this clock: what stands in the next one, that of the cut.
+  // True if the snapshot REST is requested in this clock. It shows the next clock, that of the cut.
   bool rests(const Inputs& in) const { return finished() || (in.abort && state_.mode == Mode::Run && in.busy); }
   bool settled() const { return state_.settled == kSettleClocks; }
-  // A cause comes in this clock, or a stop is under way or has been.
+  // True if a cause comes in this clock, a stop is under way, or the card is stopped.
   bool caused(const Inputs& in) const { return state_.mode != Mode::Run || causes_of(in) != 0; }
-  // A clock in which nothing moves; from a stop's first one the count begins anew.
+  // True in a clock in which nothing moves. The first clock of a stop restarts the count.
   bool counts(const Inputs& in) const {
     return (in.at_rest || shut()) && in.quiet && !in.pulses && !in.take && !state_.out.stop;
   }
-  bool made_to_hold() const { return state_.made_to_hold; }  // as of the last clock: by under-run or probe
+  bool made_to_hold() const { return state_.made_to_hold; }  // in the last clock, by under-run or probe
 
-  // A hold, of HOLD or the button, waits for the end of fixed pieces, unless it found nothing moving, or the time base
-  // at rest, since it was set.
+  // A hold, by HOLD or by the button, waits for the end of fixed pieces. It does not wait if, since it was set,
+  // nothing was moving or the time base was at rest.
   bool stays(const Inputs& in) const { return asked(in) && (state_.hold_stays || !in.moving || in.at_rest); }
   bool asked_hold(const Inputs& in) const { return asked(in) && (state_.hold_stays || !in.fixed); }
 
@@ -126,7 +127,7 @@ class StopControl {
            (causes.tool_setter ? card_map::field::kFaultToolSetter : 0);
   }
 
-  // Nothing is on its way to the pins any more: the cut follows.
+  // Nothing is on its way to the pins: the cut follows.
   bool finished() const { return closing() && settled() && !state_.out.stop; }
 
   Mode next_mode(const Inputs& in, bool any, bool at_once) const {

@@ -1,10 +1,10 @@
 // Golden model of the time base: the clock enable that carries feed override and feed hold.
 //
-// Every 4th clock the ratio moves by at most a step towards its goal (0 while held, else the target of the class),
-// never past it. The step is the slew, with classes doubled as often as the piece in force says and as 28 bits allow.
-// Every clock adds the ratio to a 16-bit phase; the carry is the enable. So n clocks at a constant ratio give
-// floor((phase + n * ratio) / 2^16) enables, spaced as evenly as whole clocks allow.
-// Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
+// Every 4th clock the ratio moves towards its goal by at most one step, never past it. The goal is 0 during a hold,
+// otherwise the target of the class. The step is the slew; on cards with classes it is doubled as often as the piece
+// in force says, within 28 bits. Every clock adds the ratio to a 16-bit phase; the carry is the enable. So n clocks
+// at a constant ratio give floor((phase + n * ratio) / 2^16) enables, spaced as evenly as whole clocks allow.
+// Not thread-safe; no errors are reported: the caller must keep the inputs within their ranges.
 #pragma once
 
 #include <array>
@@ -20,18 +20,18 @@ class TimeBase {
   struct Inputs {
     bool hold = false;  // slew to 0 instead of the target
     Setting setting;    // RATIO_FEED, RATIO_RAPID, RATIO_FIXED: targets by class; SLEW
-    std::uint8_t piece_class = card_map::constant::kClassFeed;  // whose target it is
+    std::uint8_t piece_class = card_map::constant::kClassFeed;  // class that selects the target
     std::uint8_t slew_shift = 0;                                // doublings of the slew, 0 .. 3
   };
   struct Outputs {
     bool enable = false;
     std::uint32_t ratio = 0x10000;  // 2^-16, 0..65536
   };
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::array<std::uint32_t, 3> targets{0x10000, 0x10000, 0x10000};  // ratios by class, 2^-16, 0..65536
-    std::uint32_t slew = 0xFFF'FFFF;  // 2^-28 of ratio an update (4 clocks), 28 bits; 0 keeps the ratio
-    std::uint32_t step = 0xFFF'FFFF;  // of the next update
+    std::uint32_t slew = 0xFFF'FFFF;  // 2^-28 of ratio per update (4 clocks), 28 bits; 0 keeps the ratio
+    std::uint32_t step = 0xFFF'FFFF;  // step of the next update
     // Q1.28, at most 1 = 2^28.
     std::uint32_t ratio = 1U << 28;
     std::uint32_t next_ratio = 1U << 28;
@@ -42,7 +42,7 @@ class TimeBase {
   };
   static constexpr unsigned kUpdate = card_map::constant::kSlewClocks;  // clocks
 
-  // `doubles`: the card has classes.
+  // `doubles`: the card has classes, and so doublings of the slew.
   explicit TimeBase(bool doubles = true) : doubles_(doubles) {}
 
   // One rising edge. Clocks are counted from reset (the constructor): at clocks 4k the goal is sampled, at 4k - 2 the
@@ -68,11 +68,9 @@ class TimeBase {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // For up to clocks_ahead(), and below 2^47.
-
-  // What the ratio moves to under these inputs, 2^-28, and one update of it.
+  // The ratio to which these inputs lead, in 2^-28; moved() makes one update towards it.
   std::uint32_t goal(bool hold, std::uint8_t piece_class) const { return hold ? 0 : state_.targets[piece_class] << 12; }
-  // The slew, doubled: never beyond 28 bits.
+  // The slew after its doublings, within 28 bits.
   std::uint32_t step(unsigned slew_shift) const {
     std::uint32_t step = state_.slew;
     for (; doubles_ && slew_shift != 0 && step >> 27 == 0; --slew_shift) step *= 2;

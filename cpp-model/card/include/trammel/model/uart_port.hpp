@@ -1,5 +1,5 @@
-// Golden model of the serial port, cycle-exact at every port: docs/developer/architecture.md. Bits are told by their
-// times: the k-th bit after an edge ends at the whole part of k/8 periods of 8 bits. Not thread-safe.
+// Golden model of the serial port, cycle-exact at every port: docs/developer/architecture.md. The k-th bit after an
+// edge ends floor(k/8 * period) clocks after it, where the period is the measured time of 8 bits. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class UartPort {
     bool tx = true;
     bool restart = false;     // event: a break
     bool byte_valid = false;  // event
-    std::uint8_t byte = 0;    // with it
+    std::uint8_t byte = 0;    // valid with byte_valid
     bool ready = false;
   };
 
@@ -47,13 +47,13 @@ class UartPort {
   }
 
   const Outputs& outputs() const { return out_; }
-  // Clocks of 8 bits; 0: not known.
+  // Clocks per 8 bits; 0: not known.
   std::uint32_t period() const { return known_ ? period_ : 0; }
 
  private:
   enum class Baud : std::uint8_t { Idle, Start, Count, Settle };
 
-  // Break and baud rate.
+  // Detects breaks and measures the baud rate.
   void measure(bool level, bool fall) {
     if (out_.restart) {
       baud_ = Baud::Start;
@@ -90,7 +90,7 @@ class UartPort {
     }
   }
 
-  // The middle of the start bit comes half a bit after its edge, the others bit by bit after that.
+  // The middle of the start bit is half a bit after its edge; the other bits follow at distances of one bit.
   void receive(bool known, bool level, bool fall) {
     out_.byte_valid = false;
     if (!known) {
@@ -116,7 +116,7 @@ class UartPort {
     ++received_;
   }
 
-  // Start bit in the clock after the byte was taken.
+  // The start bit begins in the clock after the byte was taken.
   void send(bool known, bool takes, std::uint8_t byte) {
     if (!known) {
       sending_ = false;
@@ -136,10 +136,10 @@ class UartPort {
 
   unsigned break_bits_;
   std::uint64_t now_ = 0;
-  bool first_ = true;  // the line, one, two and three clocks ago
-  bool second_ = true;
-  bool before_ = true;
-  std::uint64_t low_ = 0;  // clocks
+  bool first_ = true;      // the line one clock ago
+  bool second_ = true;     // the line two clocks ago
+  bool before_ = true;     // the line three clocks ago
+  std::uint64_t low_ = 0;  // clocks for which the line has been low
   Baud baud_ = Baud::Idle;
   std::uint64_t first_edge_ = 0;
   unsigned edges_ = 0;
@@ -147,11 +147,11 @@ class UartPort {
   std::uint32_t period_ = 0;
   bool receiving_ = false;
   std::uint64_t start_edge_ = 0;
-  unsigned received_ = 0;  // bits
+  unsigned received_ = 0;  // bits received
   std::uint8_t bits_ = 0;
   bool sending_ = false;
   std::uint64_t taken_ = 0;
-  unsigned sent_ = 0;  // bits
+  unsigned sent_ = 0;  // bits sent
   unsigned frame_ = 0;
   Outputs out_;
 };

@@ -1,11 +1,11 @@
-// Golden model of the under-run hold: holds the time base early enough to stand before what is queued ends, and keeps a
-// piece that would begin from rest waiting for as much.
+// Golden model of the under-run hold: holds the time base early enough to stop before the queued motion ends, and
+// keeps a piece that would begin from rest waiting until enough is queued.
 //
-// Every 32 clocks (kRound) it decides: short is where the queued ticks, of paths or of pieces, are at most
-// stop distance * ratio^2 + kUnderrunReserveTicks; but not where the last piece ends at rest with its paths queued, nor
-// where a barrier came last. What a probe drops is not counted off: from then on there is no rule until nothing is
-// queued once. What a round looks at is taken at its clocks kRatio, kFactor, kCount; it decides at
-// kDecide. Not thread-safe; no errors are reported.
+// It decides every 32 clocks (kRound). The queues are short if the queued ticks, of paths or of pieces, are at most
+// stop distance * ratio^2 + kUnderrunReserveTicks. They are not short if the last piece ends at rest with its paths
+// queued, or if a barrier came last. Commands that a probe drops are not subtracted; from then on the rule is
+// suspended until the queues have been empty once. A round samples its inputs in its clocks kRatio, kFactor and
+// kCount, and decides at kDecide. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace trammel::model {
 
 class UnderrunGuard {
  public:
-  // What the command checker lets into the queues.
+  // The halfwords and commands that the command checker passes to the queues.
   struct Arrival {
     bool drop = false;
     bool geometry_commit = false;
@@ -31,17 +31,17 @@ class UnderrunGuard {
     bool any() const { return drop || geometry_commit || geometry_write || feed_commit || feed_write; }
   };
   struct Inputs {
-    bool cut = false;   // and where there is no rule: nothing is counted
-    bool lost = false;  // event: what is queued will be dropped
+    bool cut = false;   // a cut, or a mode without the rule: nothing is counted
+    bool lost = false;  // event: queued commands will be dropped
     bool idle = false;  // nothing runs, is decoded or queued; up to four clocks late
-    bool gone = false;  // the session that wrote what is queued is no more: nothing begins or goes on
+    bool gone = false;  // the session that wrote the queued commands is gone: nothing begins or continues
     Arrival arrival;
     bool full = false;        // a queue may have no room for the next command
     LoadWord load;            // feed load
     bool take = false;        // a feed tick is taken
     bool swap = false;        // a piece began in the clock before
     bool active = false;      // a piece gives ticks
-    bool decoded = false;     // a piece waits
+    bool decoded = false;     // a decoded piece waits to begin
     std::uint32_t ratio = 0;  // 2^-16, 0..65536
   };
   struct Outputs {
@@ -65,50 +65,50 @@ class UnderrunGuard {
     std::uint64_t ticks = 0;
   };
   static constexpr unsigned kRound = 32;
-  static constexpr unsigned kPass = 4;  // ticks taken leave the counts, and a command's are added, once in a pass
+  static constexpr unsigned kPass = 4;  // clocks; each pass subtracts the ticks taken, or adds those of a command
   static constexpr unsigned kRatio = 0;
   static constexpr unsigned kFactor = 11;
   static constexpr unsigned kProduct = 21;
   static constexpr unsigned kCount = 23;
   static constexpr unsigned kDecide = 29;
-  static constexpr unsigned kLag = 7;  // clocks
+  static constexpr unsigned kLag = 7;  // clocks until `idle` includes a command that arrived
 
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     bool lost = false;
-    bool unknown = false;   // was lost while the counts were compared that are decided on next
-    bool inside = false;    // of a command on its way in
+    bool unknown = false;   // `lost` was set when the counts of the next decision were compared
+    bool inside = false;    // part of a command has arrived
     unsigned since = kLag;  // clocks since the last command came
     unsigned round = 0;
     // queued ticks
     std::int64_t paths = 0;
     std::int64_t pieces = 0;
-    std::uint64_t owed = 0;  // taken, not yet taken away from them
-    unsigned index = 0;      // of the halfword that arrives next
+    std::uint64_t owed = 0;  // ticks taken but not yet subtracted
+    unsigned index = 0;      // index of the halfword that arrives next
     Pending arriving;
     Pending pending;
     bool at_rest = false;     // the last piece ends at rest
     bool at_barrier = false;  // a barrier came last
     Flags flags;
-    // the stop distance of the next piece, and the one in force
+    // the stop distances of the next piece and of the piece in force
     std::uint32_t next = 0;
-    bool next_whole = true;  // both halfwords are there
+    bool next_whole = true;  // both halfwords have arrived
     bool half = false;
     std::uint32_t distance = 0;
-    bool ruled = false;  // it is not 0
-    bool due = false;
+    bool ruled = false;  // the distance in force is not 0
+    bool due = false;    // `next` must become the distance in force
     // the limit
     std::uint32_t ratio = 0;   // 256ths
     std::uint32_t factor = 0;  // 256ths
     std::uint64_t product = 0;
     // the piece in force and the next one
-    bool ends = false;     // ends at rest
-    bool covered = false;  // all its ticks have their paths
+    bool ends = false;     // the piece in force ends at rest
+    bool covered = false;  // paths for all its ticks are queued
     bool from_rest_before = false;
     bool decoded_before = false;
-    bool judged = false;   // the next piece is what is judged
-    bool doubled = false;  // by twice the stop's ticks
-    bool enough = false;   // for it
+    bool judged = false;   // the next piece is the one that is judged
+    bool doubled = false;  // judged against twice the ticks of a stop
+    bool enough = false;   // enough is queued for the next piece
     bool waits = false;
     Outputs out;
   };
@@ -155,13 +155,14 @@ class UnderrunGuard {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
-  // A piece that is decoded must not begin.
+  // True if a decoded piece must not begin.
   bool waits(bool active) const { return (!active || state_.ends) && !next_zero() && !state_.enough && !state_.lost; }
 
-  // Of the state as it stands: what the next round takes and decides.
+  // The quantities that the next round samples and decides, for the present state.
   bool follows(bool active) const { return !active || (state_.ends && state_.covered); }
   bool next_zero() const { return state_.next_whole && state_.next == 0; }
-  // Of the square, rounded up; none where it stands and no more will come, twice while it holds and for what begins.
+  // The square of the ratio, rounded up. 0 at rest if no more commands can come; doubled during a hold and for a
+  // piece that begins.
   std::uint32_t factor(bool standing, bool full) const {
     const std::uint32_t square = (state_.ratio * state_.ratio + 255) / 256;
     if (standing && full) return 0;
@@ -184,7 +185,7 @@ class UnderrunGuard {
     if (state_.out.hold && gone) return true;
     return is_short && (state_.out.hold || (!state_.doubled && (!follow || (state_.judged && full))));
   }
-  // Of the piece that is judged.
+  // True if the piece that is judged must wait for more commands.
   bool waits_for_more(bool is_short, bool gone) const { return is_short || (gone && state_.ruled); }
   static std::uint32_t in_256ths(std::uint32_t ratio) { return (ratio + 255) / 256; }
 
@@ -221,7 +222,7 @@ class UnderrunGuard {
         state_.owed = 0;
       }
     }
-    // Ticks that a pass leaves for the next one are still in the counts.
+    // The counts still include the ticks that the next pass subtracts.
     if (state_.round == kCount) state_.flags = compared(0);
     if (in.arrival.any()) arrive(in.arrival);
   }
@@ -233,8 +234,8 @@ class UnderrunGuard {
     (state_.pending.of_paths ? state_.paths : state_.pieces) += static_cast<std::int64_t>(state_.pending.ticks);
   }
 
-  // While what is queued is not known nothing counts. It is nothing at last when nothing runs and no command came for
-  // longer than it takes to show.
+  // Nothing counts while the content of the queues is unknown. It is known to be nothing when nothing runs and no
+  // command has come for longer than a command takes to show.
   void forget(const Inputs& in) {
     const bool shows = state_.since >= kLag && !state_.inside;
     state_.unknown = state_.lost || (state_.unknown && state_.round != kDecide);
@@ -251,7 +252,7 @@ class UnderrunGuard {
     state_.since = ends ? 0 : state_.since + (state_.since < kLag ? 1 : 0);
   }
 
-  // The count lies in halfwords 1 to 3 of what is stored, a piece's stop distance in 10 and 11.
+  // The count is in halfwords 1 to 3 of a stored command, the stop distance of a piece in halfwords 10 and 11.
   void arrive(const Arrival& a) {
     if (a.geometry_write || a.feed_write) {
       if (state_.index >= 1 && state_.index <= 3)

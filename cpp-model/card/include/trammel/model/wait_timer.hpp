@@ -1,5 +1,5 @@
-// Golden model of the timer (wait_timer) that judges steps which wait: one clock in HOLD_LIMIT, for all shapers. Not
-// thread-safe; no errors are reported.
+// Golden model of wait_timer, which limits how long steps may wait: one tick every HOLD_LIMIT clocks, for all
+// shapers. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace trammel::model {
 class WaitTimer {
  public:
   using Inputs = Setting;
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
     std::uint32_t limit = 0xFFFF;  // clocks, at least 1
     std::uint32_t count = 0;

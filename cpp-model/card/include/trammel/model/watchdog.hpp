@@ -1,5 +1,5 @@
-// Golden model of the watchdog over the host: it expires when its time has passed since WATCHDOG was last written, and
-// stays so until the next write. A time of 0 never passes. Not thread-safe; no errors are reported.
+// Golden model of the watchdog over the host: it expires when its time has passed since the last write of WATCHDOG,
+// and stays expired until the next write. A time of 0 never expires. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace trammel::model {
 class Watchdog {
  public:
   using Inputs = Setting;
-  // Clocks of a unit of WATCHDOG.
+  // Clocks per unit of WATCHDOG.
   static constexpr std::uint64_t kUnitClocks = 65'536;
 
-  // All that the next clock() depends on beside its inputs.
+  // All that the next clock() depends on besides its inputs.
   struct State {
-    std::uint64_t left = 0;  // clocks until it expires; 0: it does not run. At most 0xFFFF units and a clock.
+    std::uint64_t left = 0;  // clocks until it expires; 0: not running. At most 0xFFFF units plus one clock.
     bool expired = false;
   };
 

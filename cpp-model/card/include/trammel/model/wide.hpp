@@ -1,5 +1,5 @@
-// 128-bit unsigned numbers for the models' wide words: the compiler's own where it has them, else TwoWords, so that the
-// models also run on 32-bit hosts. Pure values, thread-safe; arithmetic wraps at 128 bits.
+// 128-bit unsigned numbers for the models' wide words: the compiler's own type if it has one, otherwise TwoWords, so
+// that the models also run on 32-bit hosts. Pure values, thread-safe; arithmetic wraps at 128 bits.
 #pragma once
 
 #include <cstdint>

@@ -26,9 +26,9 @@ class WishbonePort {
   struct Outputs {
     bool ack = false;
     bool err = false;
-    bool stall = false;     // of a pipelined one: busy, or reset in the clock before
-    std::uint32_t dat = 0;  // holds from answer to answer
-    // to the inner port; the others stand from `request` to its answer
+    bool stall = false;     // pipelined: busy, or reset in the previous clock
+    std::uint32_t dat = 0;  // holds until the next answer
+    // to the inner port; the other fields hold from `request` to its answer
     bool request = false;
     bool write = false;
     bool partial = false;
@@ -36,7 +36,7 @@ class WishbonePort {
     std::uint32_t data = 0;
   };
 
-  // As it stands after a reset.
+  // Starts in the state after a reset.
   explicit WishbonePort(bool pipelined = false) : pipelined_(pipelined) { out_.stall = pipelined; }
 
   void reset() { *this = WishbonePort(pipelined_); }
@@ -44,7 +44,7 @@ class WishbonePort {
   // One rising edge with reset low.
   void clock(const Inputs& in) {
     const bool asked = in.cyc && in.stb;
-    // What the master does now decides whether an answer still has somebody who waits for it.
+    // The master's signals in this clock decide whether somebody still waits for the answer.
     const bool waits = pipelined_ ? in.cyc : asked;
     const bool answered = out_.ack || out_.err;
     const bool take = asked && (pipelined_ ? !out_.stall : !busy_ && !answered);

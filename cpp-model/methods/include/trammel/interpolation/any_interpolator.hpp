@@ -1,5 +1,4 @@
-// Any method on any curve that it can do, behind one type. A value: copying it copies the walk. Not thread-safe; copies
-// are independent.
+// Any method on any curve that it supports, behind one type. A value: a copy is an independent walk. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -34,24 +33,24 @@ class AnyInterpolator {
   Step next() {
     return std::visit([](auto& walk) { return walk.next(); }, walk_);
   }
-  // After the steps made so far.
+  // The position after the steps made so far.
   Position position() const {
     return std::visit([](const auto& walk) -> Position { return walk.position(); }, walk_);
   }
-  // The F that chooses the next step; nothing where the method has none.
+  // The F that chooses the next step; nothing if the method has none.
   std::optional<Deviation> deviation() const {
     return std::visit([](const auto& walk) { return deviation_of(walk); }, walk_);
   }
-  // Of the last step, in the method's own units (MethodInfo::time_unit); 0 before the first.
+  // Time of the last step, in the method's own units (MethodInfo::time_unit); 0 before the first.
   std::uint64_t time() const {
     return std::visit([](const auto& walk) { return walk.time(); }, walk_);
   }
-  // Of the whole curve. Lines and rotation know it; for other arcs a copy is walked to its end.
+  // Time of the whole curve. Lines and rotation know it; for other arcs a copy walks to the end.
   std::uint64_t total_time() const {
     return std::visit([](const auto& walk) { return total_time_of(walk); }, walk_);
   }
   // Walks to the end: callback(step, walk) after each step, where walk is the method's own class, with position() and
-  // time(). One dispatch for all steps: several times as fast as next().
+  // time(). There is one dispatch for all steps: several times as fast as next().
   template <class Callback>
   void run(Callback&& callback) {
     std::visit(
@@ -96,12 +95,13 @@ class AnyInterpolator {
   Walk walk_;
 };
 
-// Throws std::invalid_argument with the reason: a curve the method cannot do, values beyond the widths, radius 0, an
-// end off the circle by more than rounding to whole pulses explains (0.7072 pulses along the radius), steer on the
-// full circle of radius 1 counter-clockwise (it never comes back), a velocity of 0 or of more than one pulse a clock.
+// Throws std::invalid_argument with the reason: a curve that the method does not support, values beyond the widths,
+// radius 0, an end off the circle by more than rounding to whole pulses explains (0.7072 pulses along the radius),
+// steer on a circle of radius 1 or an ellipse with a semi-axis of 1 (it passes the centre), a velocity of 0 or of
+// more than one pulse per clock.
 AnyInterpolator make_interpolator(Method method, const Curve& curve, const Options& options = {});
 
-// What make_interpolator checks before it looks at the method; throws likewise.
+// The checks that make_interpolator makes before those of the method; throws std::invalid_argument too.
 void check_curve(const Curve& curve);
 
 }  // namespace trammel::interpolation

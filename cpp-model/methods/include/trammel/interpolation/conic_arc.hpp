@@ -1,15 +1,14 @@
-// Circles, ellipses and their arcs from the deviation F = A x^2 + B y^2 - N, x and y from the centre.
-// Circle: A = B = 1, N = radius^2. Ellipse: A = b^2, B = a^2, N = a^2 b^2. A step of s in x adds s*GX + A to F with
-// GX = 2 A x, and 2 A s to GX; likewise y: additions only. Source: Goldberg & Goldberg, "XY Interpolation Algorithms",
-// which names the ellipse and does not give it. Ends by the rule of arc_end.hpp. No errors are reported; not
-// thread-safe.
+// Circles, ellipses and their arcs from the deviation F = A x^2 + B y^2 - N, with x and y relative to the centre.
+// Circle: A = B = 1, N = radius^2. Ellipse: A = b^2, B = a^2, N = a^2 b^2. With GX = 2 A x, a step of s in x adds
+// s*GX + A to F, and 2 A s to GX; the same holds for y. So steps need additions only. Source: Goldberg & Goldberg,
+// "XY Interpolation Algorithms", which mentions the ellipse but does not derive it. The end follows the rule of
+// arc_end.hpp. No errors are reported; not thread-safe.
 //
 // Widths. On a walk |x| <= a + 2 and |y| <= b + 2, a >= b without loss of generality.
 //  circle:  F between the neighbours of the curve: |F| <= 2 (2 (R + 2) + 1), for a diagonal candidate; gradients
 //           2 (R + 2); N <= R^2 + 2R. R <= 2^30: every value < 2^63, so 64 bits hold it.
 //  ellipse: |GX| <= 2 b^2 (a + 2), |GY| <= 2 a^2 (b + 2), so candidates of F stay within 4 * 2 a^2 (b + 2); terms of
-//  the
-//           first F: b^2 (a + 2)^2. a, b <= 2^30: terms < 2^121, candidates < 2^94: 128 bits hold them.
+//           the first F: b^2 (a + 2)^2. a, b <= 2^30: terms < 2^121, candidates < 2^94: 128 bits hold them.
 #pragma once
 
 #include <array>
@@ -28,7 +27,7 @@ struct Conic {
   Word deviation(const Point& p) const { return a * p.x * p.x + b * p.y * p.y - n; }
 };
 
-// Of `arc`, points taken from its centre.
+// The conic of `arc`, for points relative to its centre.
 template <class Word>
 Conic<Word> conic_of(const Arc& arc) {
   if (arc.is_circle()) {
@@ -41,7 +40,7 @@ Conic<Word> conic_of(const Arc& arc) {
   return {b, a, a * b};
 }
 
-// The state a rule sees: F, and the gradients (GX, GY) = (2 A x, 2 B y) with their second differences halved.
+// The inputs of a rule: F, the gradients (GX, GY) = (2 A x, 2 B y), and half of their second differences.
 template <class Word>
 struct ConicState {
   Word f;
@@ -51,15 +50,15 @@ struct ConicState {
   Word half_y;  // B
   bool clockwise;
 
-  // The curve's directions here: zero counts as positive, counter-clockwise is up on the right.
+  // The directions of the curve here. Zero counts as positive; counter-clockwise is up on the right.
   std::int8_t direction_x() const { return (gradient_y < 0) == clockwise ? std::int8_t{-1} : std::int8_t{1}; }
   std::int8_t direction_y() const { return (gradient_x < 0) == clockwise ? std::int8_t{1} : std::int8_t{-1}; }
   Word change_x(std::int8_t s) const { return half_x + (s < 0 ? -gradient_x : gradient_x); }
   Word change_y(std::int8_t s) const { return half_y + (s < 0 ? -gradient_y : gradient_y); }
 };
 
-// Table 2: bit 3 D (1 = clockwise with x right and y up; the text says the reverse), bit 2 F >= 0, bit 1 GX >= 0,
-// bit 0 GY >= 0.
+// Table 2. Index: bit 3 D (1 = clockwise with x right and y up; the paper's text says the reverse), bit 2 F >= 0,
+// bit 1 GX >= 0, bit 0 GY >= 0.
 struct SteerTable {
   static constexpr bool kDiagonal = false;
   static constexpr std::array<std::array<std::int8_t, 2>, 16> kSteps{{{0, -1},
@@ -86,9 +85,9 @@ struct SteerTable {
   }
 };
 
-// Of the x step, the y step and both, the one that leaves the smallest |F|; both on a tie with either, x before y. On
-// or outside the curve the axis that moves away from its zero is excluded where its gradient is the larger one: needle
-// ellipses run away without that.
+// Takes the x step, the y step or both, whichever leaves the smallest |F|. A tie with the diagonal step chooses the
+// diagonal; otherwise x comes before y. On or outside the curve the axis that moves away from its zero is excluded if
+// its gradient is the larger one; without this, walks on needle ellipses run away.
 struct MinDeviationRule {
   static constexpr bool kDiagonal = true;
   template <class Word>
@@ -102,7 +101,7 @@ struct MinDeviationRule {
     const bool outside = s.f >= 0;
     const Word size_x = magnitude(s.gradient_x);
     const Word size_y = magnitude(s.gradient_y);
-    // Whole expressions rather than short circuits: the outcomes are as good as random to a branch predictor.
+    // Whole expressions instead of short circuits, because a branch predictor cannot predict the outcomes.
     const bool x_allowed = !(outside & x_outward & (size_x > size_y));
     const bool y_allowed = !(outside & !x_outward & (size_y > size_x));
     const Word size_both = magnitude(f_both);
@@ -125,7 +124,7 @@ class ConicArc {
  public:
   explicit ConicArc(const Arc& arc) : ConicArc(arc, conic_of<Word>(arc)) {}
 
-  // About the arc's centre, on another curve than the arc's own: what STEER does with a start off the circle.
+  // Walks about the arc's centre on a curve other than the arc's own, as STEER does from a start off the circle.
   ConicArc(const Arc& arc, const Conic<Word>& conic)
       : centre_(arc.centre),
         at_{arc.start.x - arc.centre.x, arc.start.y - arc.centre.y},
@@ -145,20 +144,21 @@ class ConicArc {
   }
   Position position() const { return {centre_.x + at_.x, centre_.y + at_.y, 0, 0}; }
   Deviation deviation() const { return state_.f; }
-  // Steps.
+  // Unit: steps.
   std::uint64_t time() const { return time_; }
   bool exhausted() const { return end_.exhausted(); }
 
  private:
   static std::int64_t extent(const Arc& arc) {
     if (!arc.is_circle()) return arc.semi_x + arc.semi_y;
-    // |x| + |y| of a point is at least its distance: twice that holds the width and the height.
+    // |x| + |y| of a point is at least its distance from the centre, so twice the sum covers half width plus half
+    // height.
     const std::int64_t x = arc.start.x - arc.centre.x;
     const std::int64_t y = arc.start.y - arc.centre.y;
     return 2 * ((x < 0 ? -x : x) + (y < 0 ? -y : y));
   }
 
-  // Products with -1, 0 or 1 rather than branches, for the same reason.
+  // Products with -1, 0 or 1 instead of branches, for the same reason as above.
   void apply(const Step& step) {
     const Word x = step.direction[0];
     const Word y = step.direction[1];

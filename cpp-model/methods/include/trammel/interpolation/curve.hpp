@@ -1,6 +1,6 @@
-// Curves and steps, as every interpolator of this folder takes and makes them. Units: pulses; x to the right, y up.
-// Plain values: no errors, safe to share between threads once made. What a curve must satisfy is checked by
-// make_interpolator (any_interpolator.hpp), not here.
+// Curves and steps: the input and output of every interpolator of this folder. Units: pulses; x to the right, y up.
+// Plain values: no errors; safe to share between threads when complete. make_interpolator (any_interpolator.hpp)
+// checks curves, not this file.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@ inline constexpr unsigned kMaxAxes = 4;
 // Unused axes stay 0.
 using Position = std::array<std::int64_t, kMaxAxes>;
 
-// -1, 0 or +1 for each axis. All steps that fall into one clock or iteration are one Step.
+// -1, 0 or +1 per axis. One Step holds all steps of one clock or iteration.
 struct Step {
   std::array<std::int8_t, kMaxAxes> direction{};
   friend bool operator==(const Step& a, const Step& b) { return a.direction == b.direction; }
 };
 
-// The F of a method: an ellipse's needs up to 93 bits (conic_arc.hpp).
+// The type of F: an ellipse needs up to 93 bits (conic_arc.hpp).
 __extension__ typedef __int128 Deviation;
 
 struct Point {
@@ -35,26 +35,26 @@ struct Line {
   Position start{};
   Position end{};
 };
-// So that the product of two displacements, doubled, stays inside 64 bits.
+// Keeps the doubled product of two displacements within 64 bits.
 inline constexpr std::int64_t kMaxLine = std::int64_t{1} << 30;
-// So that every coordinate and every difference of coordinates stays far inside 64 bits.
+// Keeps coordinates and their differences far within 64 bits.
 inline constexpr std::int64_t kMaxCoordinate = std::int64_t{1} << 40;
 
-// A circle about `centre`, or an ellipse with its axes along x and y. start == end is one full turn; other arcs turn by
-// less than one turn from start to end. Points are in the curve's own coordinates, those in which it was given.
+// A circle about `centre`, or an ellipse with axes along x and y. start == end is one full turn; other arcs turn by
+// less than one turn from start to end. Points are in the coordinates in which the curve was given.
 struct Arc {
   Point centre;
   Point start;
   Point end;
   bool clockwise = false;
-  // Semi-axes of an ellipse. Both 0: a circle, whose radius squared is the start's distance from the centre, squared.
+  // Semi-axes of an ellipse. Both 0: a circle through `start`.
   std::int64_t semi_x = 0;
   std::int64_t semi_y = 0;
 
   bool is_circle() const { return semi_x == 0 && semi_y == 0; }
   bool is_full() const { return start == end; }
 };
-// Radius: x^2 + y^2 of any point of the walk then stays inside 63 bits. Semi-axes: see conic_arc.hpp.
+// Keeps x^2 + y^2 of any point of the walk within 63 bits. Semi-axes: see conic_arc.hpp.
 inline constexpr std::int64_t kMaxRadius = std::int64_t{1} << 30;
 inline constexpr std::int64_t kMaxSemiAxis = std::int64_t{1} << 30;
 
@@ -72,8 +72,8 @@ inline Arc make_ellipse(std::int64_t semi_x, std::int64_t semi_y, bool clockwise
   return {{0, 0}, {semi_x, 0}, {semi_x, 0}, clockwise, semi_x, semi_y};
 }
 
-// What the methods that know time need besides the curve. The second paper's v is velocity / velocity_divisor lines a
-// second: a line lasts clock_hz * velocity_divisor / velocity clocks, which need not be a whole number.
+// Additional input of the methods that use time. The velocity v of the second paper is velocity / velocity_divisor
+// lines per second: a line lasts clock_hz * velocity_divisor / velocity clocks, which need not be a whole number.
 struct Options {
   std::uint64_t clock_hz = 10'000'000;
   std::uint64_t velocity = 5000;

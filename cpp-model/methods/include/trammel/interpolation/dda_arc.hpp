@@ -1,6 +1,6 @@
-// Circles and their arcs by a digital differential analyser: x' = -y, y' = x (counter-clockwise). Two accumulators add
-// the magnitude of the other coordinate at each iteration; an overflow is a step. Ends by the rule of arc_end.hpp.
-// Units: pulses. No errors are reported; not thread-safe.
+// Circles and their arcs by a digital differential analyser: x' = -y, y' = x (counter-clockwise). At each iteration
+// two accumulators each add the magnitude of the other coordinate; an overflow is a step. The end follows the rule of
+// arc_end.hpp. Units: pulses. No errors are reported; not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ namespace trammel::interpolation {
 
 class DdaArc {
  public:
-  // Accumulators start at 0, or at one half.
+  // `half`: the accumulators start at one half, otherwise at 0.
   DdaArc(const Arc& circle, bool half);
 
   bool done() const { return end_.at_end(at_); }
   // Not to be called when done.
   Step next();
   Position position() const { return {centre_.x + at_.x, centre_.y + at_.y, 0, 0}; }
-  // Iterations; a straight step to the end counts as one.
+  // Unit: iterations; a straight step to the end counts as one.
   std::uint64_t time() const { return time_; }
   bool exhausted() const { return end_.exhausted(); }
 
@@ -30,9 +30,9 @@ class DdaArc {
   Point centre_;
   Point at_;
   bool clockwise_;
-  // 2^n, the smallest above the radius and the pulses by which the spiral outgrows it: an iteration multiplies the
-  // radius by at most sqrt(1 + 4^-n), a turn of 2 pi 2^n iterations by exp(pi / 2^n), so it adds less than pi pulses;
-  // the roundings of the position and the accumulators add less than 3.
+  // 2^n, the smallest power of 2 above the radius plus the growth of the spiral. An iteration multiplies the radius
+  // by at most sqrt(1 + 4^-n), a turn of 2 pi 2^n iterations by exp(pi / 2^n), which adds less than pi pulses. The
+  // rounding of the position and the accumulators adds less than 3.
   std::int64_t modulus_ = 1;
   std::int64_t sum_x_ = 0;
   std::int64_t sum_y_ = 0;

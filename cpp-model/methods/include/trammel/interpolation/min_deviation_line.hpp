@@ -1,6 +1,6 @@
-// Lines by minimum deviation: the longest axis steps every time, the others whenever that brings them nearer to the
-// line, so that each is within half a pulse of it. In a plane: 8 directions. Units: pulses.
-// No errors are reported; not thread-safe.
+// Lines by minimum deviation: the longest axis steps every time; each other axis steps if that brings it nearer to
+// the line, so it stays within half a pulse of the line. In a plane these are 8 directions. Units: pulses. No errors
+// are reported; not thread-safe.
 #pragma once
 
 #include <array>
@@ -35,9 +35,9 @@ class MinDeviationLine {
     const std::int64_t made = longest() - left_;
     return x_longer_ ? walk_.at(made, others_) : walk_.at(others_, made);
   }
-  // The lag of the shorter axis is the deviation but for its sign.
+  // Except for the sign, the lag of the shorter axis is the deviation.
   Deviation deviation() const { return x_longer_ ? -lag_ : lag_; }
-  // Steps.
+  // Unit: steps.
   std::uint64_t time() const { return static_cast<std::uint64_t>(longest() - left_); }
   std::uint64_t total_time() const { return static_cast<std::uint64_t>(longest()); }
 
@@ -78,7 +78,7 @@ class MinDeviationSpaceLine {
     return step;
   }
   const Position& position() const { return position_; }
-  // Steps.
+  // Unit: steps.
   std::uint64_t time() const { return static_cast<std::uint64_t>(made_); }
   std::uint64_t total_time() const { return static_cast<std::uint64_t>(longest_); }
 

@@ -1,7 +1,8 @@
-// Lines made of one pulse train an axis: DDA, one-shot velocity with phase accumulators, and with integer dividers.
-// After Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm": p_a pulses on axis a, all trains started together.
-// Axis a makes its j-th pulse in the clock (or iteration) in which its accumulator overflows for the j-th time, so the
-// walk goes from pulse to pulse and not from clock to clock. No errors are reported; not thread-safe.
+// Lines made of one pulse train per axis: DDA, one-shot velocity with phase accumulators, and with integer dividers.
+// After Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm": p_a pulses on axis a, all trains started
+// together. Axis a makes its j-th pulse in the clock (or iteration) in which its accumulator overflows for the j-th
+// time. The walk therefore goes from pulse to pulse and not from clock to clock. No errors are reported; not
+// thread-safe.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 
 namespace trammel::interpolation {
 
-// When an axis pulses. The line lasts numerator / denominator clocks.
+// The times of an axis's pulses. The line lasts numerator / denominator clocks.
 //   accumulators: x_k = floor(preset + k * p / L), so pulse j comes at k = ceil((j - preset) * L / p)
 //   dividers:     pulse j at k = j * floor(L / p)
 // 2 * numerator < 2^62 and 2 * p * denominator < 2^62.
@@ -25,7 +26,7 @@ struct PulseTiming {
   std::uint64_t denominator = 1;
 };
 
-// The longest axis's pulses.
+// The number of pulses of the longest axis.
 inline std::uint64_t longest_axis(const Line& line) {
   std::uint64_t longest = 0;
   for (unsigned a = 0; a < line.axes; ++a) {
@@ -35,7 +36,8 @@ inline std::uint64_t longest_axis(const Line& line) {
   return longest;
 }
 
-// DDA registers of n bits, 2^n the smallest power of two above the longest axis: 2^n iterations.
+// DDA registers have n bits, with 2^n the smallest power of two above the longest axis; the line takes 2^n
+// iterations.
 inline PulseTiming dda_timing(const Line& line, bool half) {
   const std::uint64_t longest = longest_axis(line);
   std::uint64_t iterations = 1;
@@ -43,7 +45,7 @@ inline PulseTiming dda_timing(const Line& line, bool half) {
   return {half ? PulseTiming::Kind::kAccumulatorHalf : PulseTiming::Kind::kAccumulatorZero, iterations, 1};
 }
 
-// The second paper's v lines a second at f clocks a second: L = f / v.
+// The second paper's v lines per second at f clocks per second: L = f / v.
 inline PulseTiming one_shot_timing(const Options& options, PulseTiming::Kind kind) {
   return {kind, options.clock_hz * options.velocity_divisor, options.velocity};
 }
@@ -51,7 +53,7 @@ inline PulseTiming one_shot_timing(const Options& options, PulseTiming::Kind kin
 template <unsigned Axes>
 class PulseTrainLine {
  public:
-  // At most one pulse a clock: p <= L on every axis.
+  // At most one pulse per clock: p <= L on every axis.
   PulseTrainLine(const Line& line, const PulseTiming& timing) : end_(line.end) {
     next_.fill(kNever);
     total_ = (timing.numerator + timing.denominator - 1) / timing.denominator;
@@ -77,9 +79,9 @@ class PulseTrainLine {
     for (unsigned a = 0; a < Axes; ++a) result[a] -= sign_[a] * static_cast<std::int64_t>(left_[a]);
     return result;
   }
-  // Clocks or iterations from the common start.
+  // Clocks or iterations since the common start.
   std::uint64_t time() const { return time_; }
-  // Accumulators: the line's duration, rounded up to whole clocks. Dividers: the slowest axis's last pulse.
+  // Accumulators: the line's duration, rounded up to whole clocks. Dividers: the last pulse of the slowest axis.
   std::uint64_t total_time() const { return total_; }
 
  private:
@@ -92,7 +94,7 @@ class PulseTrainLine {
       next_[a] = whole_[a];
       return;
     }
-    // Pulse j at ceil((2j - 1) * L / 2p), or ceil(2j * L / 2p): one more pulse adds 2L / 2p.
+    // Pulse j is at ceil((2j - 1) * L / 2p), or ceil(2j * L / 2p): each further pulse adds 2L / 2p.
     modulus_[a] = 2 * left_[a] * timing.denominator;
     whole_[a] = 2 * timing.numerator / modulus_[a];
     remainder_[a] = 2 * timing.numerator % modulus_[a];
@@ -102,7 +104,7 @@ class PulseTrainLine {
     slack_[a] = static_cast<std::int64_t>(next_[a] * modulus_[a] - first);
   }
 
-  // One expression for all axes: stepping through the bytes of a Step in a loop stalls on each of them.
+  // One expression for all axes: a loop over the bytes of a Step stalls on each of them.
   template <std::size_t... Index>
   Step step(std::index_sequence<Index...>) {
     return {{pulse(Index)...}};
@@ -110,7 +112,7 @@ class PulseTrainLine {
 
   // The direction in which the axis steps at time_, or 0.
   std::int8_t pulse(std::size_t a) {
-    // Masks rather than branches: which axis is due next is as good as random.
+    // Masks instead of branches, because a branch predictor cannot predict which axis is due next.
     const std::uint64_t due = next_[a] == time_;
     slack_[a] -= static_cast<std::int64_t>(-due & remainder_[a]);
     const std::uint64_t late = static_cast<std::uint64_t>(slack_[a]) >> 63;
@@ -132,7 +134,7 @@ class PulseTrainLine {
   std::uint64_t total_ = 0;
   std::array<std::uint64_t, Axes> next_{};   // clock of the next pulse
   std::array<std::int64_t, Axes> slack_{};   // (clock - exact time of the pulse) * modulus, >= 0
-  std::array<std::uint64_t, Axes> whole_{};  // interval of two pulses in clocks: whole + remainder / modulus
+  std::array<std::uint64_t, Axes> whole_{};  // interval between two pulses in clocks: whole + remainder / modulus
   std::array<std::uint64_t, Axes> remainder_{};
   std::array<std::uint64_t, Axes> modulus_{};
   std::array<std::uint64_t, Axes> left_{};

@@ -1,7 +1,7 @@
-// STEER's circle routine as printed: from (x, y), steps by Table 2 about the origin until it is back at its start,
-// which is all the end that it knows. From a start off the circle it hardly ever comes back. Source: Goldberg &
-// Goldberg, "XY Interpolation Algorithms", listing 1, docircle(). Its method with an end is SteerCircle
-// (conic_arc.hpp). |x|, |y|, radius < 2^30. Not thread-safe.
+// STEER's circle routine as printed: from (x, y) it steps by Table 2 about the origin until it is back at its start;
+// it has no other end. From a start off the circle it hardly ever comes back. Source: Goldberg & Goldberg, "XY
+// Interpolation Algorithms", listing 1, docircle(). SteerCircle (conic_arc.hpp) is the same method with an end. |x|,
+// |y|, radius < 2^30. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ namespace trammel::interpolation {
 
 class SteerProgram {
  public:
-  // `clockwise` is its D = 1.
+  // `clockwise` is the paper's D = 1.
   SteerProgram(Point start, std::int64_t radius, bool clockwise)
       : start_(start), at_(start), radius_(radius), clockwise_(clockwise) {}
 
   Point position() const { return at_; }
   std::int64_t deviation() const { return at_.x * at_.x + at_.y * at_.y - radius_ * radius_; }
-  // Back at the start; true before the first step too, where the program does not ask yet.
+  // True at the start, also before the first step, when the program does not check it yet.
   bool back() const { return at_ == start_; }
 
   Step next() {
@@ -31,8 +31,8 @@ class SteerProgram {
     return step;
   }
 
-  // Steps until it is back at its start, or nothing when it never is: the next step depends on the position alone, so
-  // a walk that meets itself anywhere else (one at double speed overtakes it there) turns there for ever.
+  // Steps until the walk is back at its start, or nothing if it never is. The next step depends only on the position,
+  // so a walk that meets itself elsewhere stays in that loop; a second walk at double speed overtakes it there.
   std::optional<std::uint64_t> steps_to_return() const {
     SteerProgram slow = *this;
     SteerProgram fast = *this;

@@ -1,6 +1,6 @@
-// Lines on two axes by unit steps chosen from a deviation F: one class for the three rules with 4 directions.
-// Units: pulses. With |dx|, |dy| <= 2^30 (kMaxLine) and D = |dx|*y - |dy|*x, positions counted along the line:
-// every rule keeps |D| <= |dx| + |dy|, so |F| < 2^32. No errors are reported; not thread-safe.
+// Lines on two axes by unit steps chosen from a deviation F: one class for the three rules with 4 directions. Units:
+// pulses. |dx|, |dy| <= 2^30 (kMaxLine). With D = |dx|*y - |dy|*x and positions counted along the line, every rule
+// keeps |D| <= |dx| + |dy|, so |F| < 2^32. No errors are reported; not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace trammel::interpolation {
 
-// Start, magnitudes and signs of a line on two axes, and how far along it the walk is.
+// Start, lengths and signs of a line on two axes.
 class PlaneWalk {
  public:
   explicit PlaneWalk(const Line& line)
@@ -36,9 +36,10 @@ class PlaneWalk {
   std::int64_t length_y_;
 };
 
-// A rule says what F is at the start and when x steps. In every rule an x step subtracts |dy|, a y step adds |dx|.
-// None of them leaves the line's box: with x at its end D <= -|dx| unless y is too, with y at its end D >= |dy| unless
-// x is too; the rules below choose the other axis then. A line along one axis is where they need care.
+// A rule defines F at the start, and the condition for an x step. In every rule an x step subtracts |dy| and a y step
+// adds |dx|. No rule leaves the line's bounding box: with x at its end D <= -|dx| unless y is at its end too, and
+// with y at its end D >= |dy| unless x is too; the rules below then choose the other axis. Lines along one axis need
+// special care.
 
 // Goldberg & Goldberg, listing 1: F = |dx| - |dy| at the start, F > 0 ? x : y.
 struct SteerRule {
@@ -46,14 +47,14 @@ struct SteerRule {
   static bool x_steps(std::int64_t f, std::int64_t, std::int64_t) { return f > 0; }
 };
 
-// The textbook's: F = xe*y - ye*x, F >= 0 ? x : y. F never leaves 0 on a line along y: y steps then.
+// The textbook rule: F = xe*y - ye*x, F >= 0 ? x : y. On a line along y F stays 0, so y steps there.
 struct PointByPointRule {
   static std::int64_t first(std::int64_t, std::int64_t) { return 0; }
   static bool x_steps(std::int64_t f, std::int64_t dx, std::int64_t) { return f >= 0 && dx != 0; }
 };
 
-// F as above; the axis whose step leaves the smaller |F|. As F - |dy| <= F + |dx|, x leaves the smaller one when their
-// sum is positive; on a tie the longer axis steps (x where both are equal).
+// F as above; chooses the axis whose step leaves the smaller |F|. As F - |dy| <= F + |dx|, x leaves the smaller one
+// if their sum is positive. On a tie the longer axis steps (x if both are equal).
 struct MinFRule {
   static std::int64_t first(std::int64_t, std::int64_t) { return 0; }
   static bool x_steps(std::int64_t f, std::int64_t dx, std::int64_t dy) {
@@ -72,7 +73,7 @@ class FourDirectionLine {
   // Not to be called when done.
   Step next() {
     const bool in_x = Rule::x_steps(f_, walk_.length_x(), walk_.length_y());
-    // Masks rather than a branch, which would be mispredicted at every other step.
+    // Masks instead of a branch, which would be mispredicted at every other step.
     const std::int64_t mask = -static_cast<std::int64_t>(in_x);
     f_ += walk_.length_x() - (mask & (walk_.length_x() + walk_.length_y()));
     x_ += in_x;
@@ -83,7 +84,7 @@ class FourDirectionLine {
   }
   Position position() const { return walk_.at(x_, walk_.length_x() + walk_.length_y() - left_ - x_); }
   Deviation deviation() const { return f_; }
-  // Steps.
+  // Unit: steps.
   std::uint64_t time() const { return total_time() - static_cast<std::uint64_t>(left_); }
   std::uint64_t total_time() const { return static_cast<std::uint64_t>(walk_.length_x() + walk_.length_y()); }
 

@@ -17,27 +17,29 @@
 
 namespace trammel::measure {
 
-// A trace takes 16 bytes a step. Longer curves are for the caller to refuse.
+// A trace takes 16 bytes per step. Callers should refuse longer curves.
 inline constexpr std::uint64_t kMaxPulses = 4'000'000;
 
-// Pulses of all axes on the way, at least: exact for lines, the circumscribed rectangle's way round for a full turn.
+// Estimate of the pulses of all axes: exact for lines. For round curves it is that of a full turn (the perimeter of
+// the circumscribed rectangle); for circles it may be low by a factor of up to 1.42.
 std::uint64_t pulses_along(const interpolation::Curve& curve);
 
 IdealCurve ideal_of(const interpolation::Curve& curve);
 
-// The whole walk. Throws what make_interpolator throws (std::invalid_argument).
+// Records the whole walk. Throws what make_interpolator throws (std::invalid_argument).
 void record(interpolation::Method method, const interpolation::Curve& curve, const interpolation::Options& options,
             Trace& trace);
 
-// What the card runs itself costs one computation and its block: the direct-mode registers for a line (FREQUENCY_LO[3]
-// .. START), ARC for a conic by STEER's rule or by least deviation (the deviation accumulator in 4 or 8 directions),
-// ARC_CHORD for one by rotation (the arc generator). The rest is counted as run by the host, step by step.
+// A method that the card runs itself costs one computation and its block: the direct-mode registers for a line
+// (FREQUENCY_LO[3] .. START), ARC for a conic by STEER's rule or by least deviation (the deviation accumulator in 4
+// or 8 directions), ARC_CHORD for an arc by rotation (the arc generator). All other methods count as run by the host,
+// step by step.
 HostCost cost_of(interpolation::Method method, const Trace& trace, bool line);
 
 struct MethodMeasures {
   interpolation::Method method = interpolation::Method::kSteer;
-  std::uint64_t steps = 0;   // times with a step
-  std::uint64_t pulses = 0;  // of all axes
+  std::uint64_t steps = 0;   // times at which at least one axis steps
+  std::uint64_t pulses = 0;  // pulses of all axes
   std::uint64_t total_time = 0;
   HostCost cost;
   Distances distances;
@@ -46,28 +48,28 @@ struct MethodMeasures {
   Ripple ripple;
 };
 
-// All but the motor. Thread-safe.
+// All measures except the motor. Thread-safe.
 MethodMeasures measure_method(interpolation::Method method, const Trace& trace, const IdealCurve& curve);
 
-// Methods that can do this curve, in the order of the enumeration.
+// The methods that support this curve, in the order of the enumeration.
 std::vector<interpolation::Method> methods_for(const interpolation::Curve& curve);
 
 // One method over many lines.
 struct RandomMeasures {
   interpolation::Method method = interpolation::Method::kSteer;
   double largest_perpendicular = 0;
-  interpolation::Line worst_line;  // where that was
-  double mean_perpendicular = 0;   // this and what follows: mean over the lines
+  interpolation::Line worst_line;  // the line with largest_perpendicular
+  double mean_perpendicular = 0;   // this and the following means: mean over the lines
   double largest_horizontal = 0;
   double largest_axis = 0;
   double largest_interval_deviation = 0;
-  double mean_interval_deviation = 0;  // of the largest of each line
+  double mean_interval_deviation = 0;  // mean over the lines of each line's largest
   double mean_rms_interval = 0;
   double largest_ripple = 0;
   double mean_rms_ripple = 0;
   double mean_steps = 0;
   double mean_operations = 0;
-  std::uint64_t wrong_ends = 0;  // lines that did not end on their end point: 0, or the method is broken
+  std::uint64_t wrong_ends = 0;  // lines that did not end at their end point; not 0 means that the method is broken
 };
 
 struct RandomLines {
@@ -78,12 +80,12 @@ struct RandomLines {
   unsigned threads = 2;
 };
 
-// Line number `index`: depends on it and the seed alone.
+// Line number `index`; it depends only on `index` and the seed.
 interpolation::Line random_line(const RandomLines& lines, std::uint64_t index);
 
-// Every method on every line. The result does not depend on the number of threads. `progress` is called by the calling
-// thread now and then with the part done. Throws std::invalid_argument when a method cannot do the largest line
-// (a velocity of more than a pulse a clock).
+// Every method on every line. The result does not depend on the number of threads. `progress` is called from time to
+// time by the calling thread, with the fraction done. Throws std::invalid_argument if a method cannot do the largest
+// line (a velocity of more than one pulse per clock).
 std::vector<RandomMeasures> measure_random_lines(const RandomLines& lines,
                                                  const std::function<void(double)>& progress = {});
 

@@ -1,13 +1,13 @@
-// How far a method strays from the curve. Positions are those after all steps of one time. Unit: pulses.
+// The distance of a method from its curve. Positions are those after all steps of one time. Unit: pulses.
 //
-// - perpendicular: the distance to the curve, in the space of its axes (what kind for arcs: ideal_curve.hpp). Largest
-//   and mean over the positions after each event; the start does not count.
-// - horizontal: the distance along x to the point of the line at the same y. Only for lines of two axes, not parallel
-//   to x: the second paper's bound (Zeng, Zhang & Huang, section 3) is on this one or on the likewise vertical one,
-//   and both are larger than the perpendicular.
-// - axis: of each axis, the distance from the point that runs along the curve at constant speed, over all whole time
-//   units 0 .. total_time; the mean is over the positions after each event. A method that keeps to the line but
-//   hurries or dawdles along it shows here.
+// - perpendicular: the distance to the curve, in the space of its axes (definition for arcs: ideal_curve.hpp).
+//   Largest and mean over the positions after each event, without the start.
+// - horizontal: the distance along x to the point of the line at the same y. Only for lines of two axes that are not
+//   parallel to x. The second paper's bound (Zeng, Zhang & Huang, section 3) is on this distance or on the vertical
+//   one; both are larger than the perpendicular distance.
+// - axis: per axis, the distance from the point that runs along the curve at constant speed, over all whole time
+//   units 0 .. total_time; the mean is over the positions after each event. It shows a method that keeps to the line
+//   but runs ahead or behind along it.
 // Pure functions: thread-safe.
 #pragma once
 

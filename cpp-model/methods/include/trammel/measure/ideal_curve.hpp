@@ -1,10 +1,10 @@
-// The curve that a method should have made, and the point that runs along it at constant speed.
+// The ideal curve of a method, and the point that runs along it at constant speed.
 //
-// A line joins its integer end points. An arc starts at a rounded point and ends at one, so the two lie at slightly
-// different distances from the centre: distances are measured outside the annulus between both radii, and the running
-// point's radius goes linearly in angle from the one to the other. An ellipse is the axis-parallel one of semi-axes a
-// and b; the running point's size relative to it goes in the same way from the start's to the end's.
-// Unit: pulses. Immutable after construction: thread-safe.
+// A line joins its integer end points. An arc starts and ends at rounded points, which lie at slightly different
+// distances from the centre. Its distances are measured from the annulus between both radii, and the radius of the
+// running point changes linearly with the angle from one to the other. An ellipse is axis-parallel with semi-axes a
+// and b; the size of the running point relative to it changes in the same way from the start's to the end's. Unit:
+// pulses. Immutable after construction: thread-safe.
 #pragma once
 
 #include <array>
@@ -60,16 +60,16 @@ class IdealCurve {
   Vector start_{};
   Vector displacement_{};
   RoundShape shape_{};
-  double start_angle_ = 0;  // eccentric anomaly; for a circle the angle itself
+  double start_angle_ = 0;  // eccentric anomaly; of a circle, the angle itself
   double sweep_ = 0;        // signed, counter-clockwise positive
-  double start_size_ = 1;   // distance from the centre relative to the shape
+  double start_size_ = 1;   // size of the start: distance from the centre relative to the shape
   double end_size_ = 1;
-  std::vector<double> length_at_;  // arc length after each of equal parts of the sweep
+  std::vector<double> length_at_;  // arc length after each of the equal parts of the sweep
 };
 
 // Distance from (x, y) to the ellipse of semi-axes a and b about the origin, both > 0. Accurate to 1e-9 of a + b.
-// Source: the nearest point's parameter by bisection of the strictly decreasing function whose root it is (D. Eberly,
-// "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid").
+// Source: D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid": the parameter of the
+// nearest point is the root of a strictly decreasing function, found by bisection.
 double distance_to_ellipse(double x, double y, double a, double b);
 
 }  // namespace trammel::measure

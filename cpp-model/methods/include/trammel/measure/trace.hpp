@@ -1,7 +1,8 @@
-// What a method did on one curve, as the measures need it: every step with the time at which it came.
+// The record of a method on one curve, as the measures need it: every step with its time.
 //
-// Times are in the method's own unit (iterations, clocks, steps) and run to total_time(), when the method has finished
-// the curve. The measures divide by total_time(), so that all methods are compared over the same duration, that is at
+// Times are in the method's own unit (iterations, clocks, steps) and run to total_time(), when the method has
+// finished the curve. The measures divide by total_time(), so that all methods are compared over the same duration,
+// and so at equal mean speed. Not thread-safe.
 // equal mean speed. Not thread-safe.
 #pragma once
 
@@ -25,7 +26,7 @@ struct Event {
 
 class Trace {
  public:
-  // Starts anew, keeping the memory. `axes` is 1 .. kTraceAxes.
+  // Starts a new trace and keeps the memory. `axes` is 1 .. kTraceAxes.
   void clear(std::size_t axes, const TracePosition& start) {
     axes_ = axes;
     start_ = start;
@@ -33,22 +34,22 @@ class Trace {
     events_.clear();
   }
 
-  // All steps of one time, which increases from call to call and is at least 1.
+  // Adds all steps of one time, which increases from call to call and is at least 1.
   void add(std::uint64_t time, const Directions& direction) { events_.push_back({time, direction}); }
 
-  // The same in bulk, for who knows a bound: write up to `most` events one after another, then keep those before `end`.
-  // A million lines are recorded so in half the time.
+  // Adds in bulk, for callers that know a bound: write up to `most` events in sequence, then keep those before `end`.
+  // This halves the time to record a million lines.
   Event* room(std::size_t most) {
     if (room_.size() < most) room_.resize(most);
     return room_.data();
   }
   void take(const Event* end) { events_.assign(static_cast<const Event*>(room_.data()), end); }
 
-  // Call once after the last step. `total_time` is at least that one's time, and below 2^63.
+  // To be called once after the last step. `total_time` is at least the time of that step, and below 2^63.
   void finish(std::uint64_t total_time) {
     total_time_ = total_time;
     for (std::size_t a = 0; a < axes_; ++a) {
-      // Without a branch: which axis steps next is as good as random.
+      // No branch, because a branch predictor cannot predict which axis steps next.
       times_[a].resize(events_.size() + 1);
       std::size_t count = 0;
       for (const Event& event : events_) {
@@ -62,7 +63,7 @@ class Trace {
   std::size_t axes() const { return axes_; }
   const TracePosition& start() const { return start_; }
   const std::vector<Event>& events() const { return events_; }
-  // When an axis stepped. Valid after finish().
+  // The times of an axis's steps. Valid after finish().
   const std::vector<std::uint64_t>& times(std::size_t axis) const { return times_[axis]; }
   std::uint64_t total_time() const { return total_time_; }
 

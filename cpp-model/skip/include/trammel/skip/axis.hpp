@@ -1,4 +1,5 @@
-// Adaptors of an axis and its two parts, and many ticks of the pulse generator at once: PulsesAhead. See horizon.hpp.
+// Adaptors of an axis and its two parts. PulsesAhead passes many ticks of the pulse generator at once. See
+// horizon.hpp.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +16,13 @@ class PulsesAhead {
  public:
   explicit PulsesAhead(model::PulseGenerator& block) : s_(block.state()) {}
 
-  // n ticks that make no step, n <= silent_ticks(); only when at_rest().
+  // Passes n ticks that make no step, n <= silent_ticks(); only when at_rest().
   void silent_ticks(std::uint64_t n) {
     const auto sum = static_cast<std::uint64_t>(s_.phase) + n * static_cast<std::uint64_t>(s_.increment);
     s_.phase = static_cast<std::int64_t>(sum & static_cast<std::uint64_t>(model::PulseGenerator::kMask));
   }
 
-  // The tick after silent_ticks() silent ones: true when its step is backwards. The step is not in flight.
+  // Passes the tick after silent_ticks() silent ones; true if its step is backwards. The step is not put in flight.
   bool step_at_once() {
     s_.phase += s_.increment;
     const bool backwards = s_.phase < 0;
@@ -29,7 +30,7 @@ class PulsesAhead {
     return backwards;
   }
 
-  // A step of a tick taken `clocks_ago` clocks ago (0: in the last one), for the outputs alone.
+  // Places the step of a tick taken `clocks_ago` clocks ago (0: in the last one) in flight; only the outputs change.
   void place_step(std::uint64_t clocks_ago, bool backwards) {
     const unsigned event =
         backwards ? model::PulseGenerator::kStep | model::PulseGenerator::kBackwards : model::PulseGenerator::kStep;
@@ -39,15 +40,15 @@ class PulsesAhead {
     if (clocks_ago >= 2) s_.out.dir = backwards;
   }
 
-  // How many ticks in a row would make no step; the largest number there is where none ever would.
+  // The number of ticks in a row that would make no step; UINT64_MAX if none ever would.
   std::uint64_t silent_ticks() const {
     if (!s_.open || s_.increment == 0) return UINT64_MAX;
     if (s_.increment > 0) return static_cast<std::uint64_t>((model::PulseGenerator::kMask - s_.phase) / s_.increment);
     return static_cast<std::uint64_t>(s_.phase / -s_.increment);
   }
 
-  // For increments that are not negative (a prescaler's). Ticks up to the one that makes the `steps`-th step from now,
-  // that included; the largest number there is where there is none, or that far away.
+  // Ticks up to and including the one that makes the `steps`-th step from now; UINT64_MAX if there is none, or if it
+  // is too far away. Only for increments that are not negative (a prescaler's).
   std::uint64_t ticks_until(std::uint64_t steps) const {
     constexpr unsigned kFirst = 24;
     if (!s_.open || s_.increment <= 0 || steps >> model::PulseGenerator::kFractionBits != 0) return UINT64_MAX;
@@ -61,7 +62,7 @@ class PulsesAhead {
     return (first << (model::PulseGenerator::kFractionBits - kFirst)) + rest / by + static_cast<std::uint64_t>(more);
   }
 
-  // n ticks at once; how many steps they make. None of these is in flight.
+  // Passes n ticks; returns the number of their steps. None of the steps is put in flight.
   std::uint64_t pass(std::uint64_t n) {
     const model::uint128 sum = model::uint128{n} * model::uint128{static_cast<std::uint64_t>(s_.increment)} +
                                model::uint128{static_cast<std::uint64_t>(s_.phase)};
@@ -70,7 +71,8 @@ class PulsesAhead {
     return static_cast<std::uint64_t>(sum >> model::PulseGenerator::kFractionBits);
   }
 
-  // At most a pulse a tick, either way; else ticks go one by one.
+  // True if the increment is at most one pulse per tick, in either direction; otherwise ticks must be clocked one by
+  // one.
   bool within_a_pulse() const {
     return s_.increment <= model::PulseGenerator::kMask + 1 && s_.increment >= -model::PulseGenerator::kMask - 1;
   }
@@ -79,10 +81,10 @@ class PulsesAhead {
   model::PulseGenerator::State& s_;
 };
 
-// Nothing is in flight.
+// True if no step is in flight.
 inline bool at_rest(const model::PulseGenerator& block) { return block.state().pipe == 0 && !block.state().out.step; }
 
-// With `tick` each clock is one: up to the one that makes a step.
+// With `tick` every clock is a tick: the horizon ends before the tick that makes a step.
 inline std::uint64_t horizon(const model::PulseGenerator& block, const model::PulseGenerator::Inputs& in) {
   if (!at_rest(block) || in.clear || in.swap || in.chord || in.load_increment || in.load_count) return 0;
   if (!in.tick) return kForever;
@@ -94,7 +96,7 @@ inline void advance(model::PulseGenerator& block, const model::PulseGenerator::I
   if (in.tick) PulsesAhead(block).silent_ticks(clocks);
 }
 
-// Nothing waits and no pulse is about to begin: without a step the position stays and no fault can come.
+// True if no step waits and no pulse is about to begin. Without a new step the position stays and no fault can come.
 inline bool no_step_waits(const model::StepShaper& block) {
   const model::StepShaper::State& s = block.state();
   return s.waiting == 0 && s.lead == 0 && !s.waited && !s.out.fault;
@@ -106,7 +108,7 @@ inline std::uint64_t horizon(const model::StepShaper& block, const model::StepSh
   if (!s.out.busy) return kForever;
   using Phase = model::StepShaper::Phase;
   if (s.out.fault || s.lead != 0 || s.waiting != 0 || s.phase == Phase::kSetup) return 0;
-  // The clock that begins with nothing left shows the next phase. A pulse of length 0 shows in the first clock of its
+  // A clock that begins with left == 0 shows the next phase. A pulse of length 0 shows in the first clock of its
   // space.
   return s.pulse == (s.phase == Phase::kHigh) ? s.left : 0;
 }
@@ -114,7 +116,7 @@ inline void advance(model::StepShaper& block, const model::StepShaper::Inputs&, 
   model::StepShaper::State& s = block.state();
   if (s.out.busy) s.left -= static_cast<std::uint32_t>(clocks);
 }
-// So many clocks, horizons one behind the other; without a step, while no_step_waits().
+// Passes this many clocks, one horizon after the other; only without a step and while no_step_waits().
 inline void pass(model::StepShaper& block, const model::StepShaper::Inputs& in, std::uint64_t clocks) {
   while (clocks != 0) {
     const std::uint64_t some = std::min(clocks, horizon(block, in));
@@ -139,7 +141,7 @@ inline void advance(model::Axis& axis, const model::Axis::Inputs&, std::uint64_t
   advance(axis.state().shaper, axis.state().times, clocks);
 }
 
-// Up to the next tick; a limit that was lowered below the count is caught up by clock().
+// Ends before the next tick. If a limit was lowered below the count, clock() corrects that.
 inline std::uint64_t horizon(const model::WaitTimer& timer, const model::Setting& in) {
   const model::WaitTimer::State& s = timer.state();
   if (in.set || s.tick || s.count + 1 >= s.limit) return 0;
@@ -148,10 +150,10 @@ inline std::uint64_t horizon(const model::WaitTimer& timer, const model::Setting
 inline void advance(model::WaitTimer& timer, const model::Setting&, std::uint64_t clocks) {
   timer.state().count += static_cast<std::uint32_t>(clocks);
 }
-// Any number of clocks without a setting, ticks among them.
+// Any number of clocks without a setting, ticks included.
 inline void pass(model::WaitTimer& timer, std::uint64_t clocks) {
   if (clocks == 0) return;
-  timer.clock({});  // a limit lowered below the count is caught up here
+  timer.clock({});  // handles a limit that was lowered below the count
   if (clocks == 1) return;
   model::WaitTimer::State& s = timer.state();
   s.count = static_cast<std::uint32_t>((s.count + (clocks - 1)) % s.limit);

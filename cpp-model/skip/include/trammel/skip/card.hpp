@@ -1,5 +1,6 @@
-// The core and the card with skipping: clock() leaves the state that the block's own clock() leaves, run() the one that
-// so many of these leave, but blocks with a horizon are not clocked, and clocks between steps go at once.
+// The core and the card with skipping. clock() leaves the state that the block's own clock() leaves, and run() the
+// state that this number of them leaves; but blocks within their horizon are not clocked, and clocks between steps
+// pass at once.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +21,11 @@ struct Pins {
   bool emergency_stop;
 };
 
-// Edges at once without requests, `limit` at most, with these levels at the inputs; 0 where it is not worth it.
+// Passes edges without requests at once, at most `limit`, with these levels at the inputs. Returns their number; 0 if
+// a jump is not worth its cost.
 std::uint64_t jump(model::CoreModel& core, std::uint64_t limit, const Pins& pins = {});
 
-// `clocks` edges without requests or bus traffic, with these levels at the inputs.
+// Makes `clocks` edges without requests or bus traffic, with these levels at the inputs.
 void run(model::CoreModel& core, std::uint64_t clocks, const Pins& pins = {});
 void run(model::CardModel& card, std::uint64_t clocks, const Pins& pins = {});
 

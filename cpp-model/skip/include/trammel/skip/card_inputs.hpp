@@ -15,7 +15,7 @@ inline std::uint64_t horizon(const model::InputPins& block, const model::InputPi
 }
 inline void advance(model::InputPins&, const model::InputPins::Inputs&, std::uint64_t) {}
 
-// Until an input that differs passes.
+// Ends when an input that differs from its output passes.
 std::uint64_t horizon(const model::InputFilter& block, const model::InputFilter::Inputs& in);
 void advance(model::InputFilter& block, const model::InputFilter::Inputs& in, std::uint64_t clocks);
 

@@ -22,9 +22,9 @@ inline std::uint64_t horizon(const model::Axi4LitePort& port, const model::Axi4L
 }
 inline void advance(model::Axi4LitePort&, const model::Axi4LitePort::Inputs&, std::uint64_t) {}
 
-// Units of LINK_TIMEOUT that pass in so many clocks from `time` on.
+// The units of LINK_TIMEOUT that pass in `clocks` clocks from `time` on.
 inline std::uint64_t link_units(std::uint64_t time, std::uint64_t clocks) {
-  // The unit at time t shows with (t - 2) a multiple of a unit.
+  // A unit at time t shows when (t - 2) is a multiple of a unit.
   return ((time + clocks - 3) >> model::LinkWatch::kUnitBits) - ((time - 3) >> model::LinkWatch::kUnitBits);
 }
 // Clocks before the one in which the link is lost.
@@ -37,7 +37,7 @@ inline void advance(model::LinkWatch& link, std::uint64_t time, std::uint64_t cl
   if (link.watches()) link.state().left -= static_cast<std::uint32_t>(link_units(time, clocks));
 }
 
-// Only the time goes on.
+// Within the horizon only the time advances.
 inline std::uint64_t horizon(const model::RegisterFile& registers, const model::RegisterFile::Inputs& in) {
   const model::RegisterFile::State& s = registers.state();
   const model::RegisterFile::Outputs& out = s.out;

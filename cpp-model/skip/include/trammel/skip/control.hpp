@@ -26,7 +26,7 @@ inline std::uint64_t horizon(const model::StopControl& block, const model::StopC
   const bool events = in.step_fault != 0 || in.mismatch || in.incomplete || in.missing || in.abort || in.clear != 0 ||
                       in.setting.set || in.soft_limit || s.out.cut || s.out.stop;
   const bool pulses = in.causes.limit || in.causes.probe || in.causes.tool_setter;
-  // Causes that last: once they are in FAULT and the card stands, they change nothing more.
+  // Causes that persist: once they are in FAULT and the card is stopped, they change nothing more.
   const std::uint32_t lasting = (in.expired ? card_map::field::kFaultWatchdog : 0) |
                                 (in.link_lost ? card_map::field::kFaultLinkLoss : 0) |
                                 (in.emergency ? card_map::field::kFaultEmergencyStop : 0) |
@@ -52,9 +52,9 @@ inline std::uint64_t horizon(const model::SoftLimits& block, const model::SoftLi
   const model::SoftLimits::State& s = block.state();
   return forever_if(in.counts == 0 && s.moved == 0 && !s.judged.any && !s.cause.any && !in.clear && !in.setting.set);
 }
-// Clocks without a pulse. What has moved stands within its limits.
+// Clocks without a pulse. Axes that have moved must be within their limits.
 inline void pass(model::SoftLimits& block, std::uint64_t clocks) {
-  // Two rounds look at all that has moved; from then on only the phase counts.
+  // Two rounds look at all axes that have moved; after that only the phase changes.
   const std::uint64_t rounds = 2 * block.round();
   if (clocks > rounds) block.state().phase = static_cast<unsigned>((block.state().phase + clocks) % block.round());
   for (std::uint64_t i = std::min(clocks, rounds); i != 0; --i) block.look(0);

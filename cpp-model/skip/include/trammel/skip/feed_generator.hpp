@@ -1,4 +1,4 @@
-// Adaptor of the feed generator, and many of its enabled clocks at once: FeedAhead. See horizon.hpp.
+// Adaptor of the feed generator. FeedAhead passes many enabled clocks at once. See horizon.hpp.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class FeedAhead {
     std::uint64_t enables = 0;
     std::uint64_t carries = 0;
   };
-  // Enabled clocks at once, up to the one that carries for the `carries`-th time, `limit` at most. Exact in all but
-  // what is in flight: neither ticks nor rates appear before 3 more clocks of clock(). Without swap, load and clear.
-  // Cost: a division at a constant rate, else about a nanosecond an update.
+  // Passes enabled clocks up to the `carries`-th carry, at most `limit`. Exact except for the ticks and rates in
+  // flight, which appear only after 3 more clocks of clock(). Not for clocks with a swap, load or clear. Cost: one
+  // division at a constant rate, otherwise about a nanosecond per update.
   Advanced advance(std::uint64_t limit, std::uint64_t carries);
 
  private:
@@ -31,12 +31,12 @@ class FeedAhead {
   model::FeedGenerator::State& s_;
 };
 
-// The carry of the last clock(), and those of the two before.
+// The carry of the last clock(), or of the one or two clocks before it.
 inline bool carried(const model::FeedGenerator& block, unsigned clocks_ago) {
   const model::FeedGenerator::State& s = block.state();
   return clocks_ago == 2 ? s.outputs.tick : s.in_flight[clocks_ago].tick;
 }
-// No tick is visible or in flight, and the rate shown is the one in use.
+// True if no tick is visible or in flight, and the rate shown is the one in use.
 inline bool at_rest(const model::FeedGenerator& block) {
   const model::FeedGenerator::State& s = block.state();
   const auto rate = static_cast<std::uint32_t>(s.slope >> 16);

@@ -1,16 +1,17 @@
-// Going from step to step: many clocks of the motion core at once, exactly as clock() would.
+// Jumps from step to step: many clocks of the motion core at once, with exactly the result of clock().
 //
-// A jump begins where nothing is decided: no swap, decode, access or step under way, a ratio that stands or slews.
-// Ticks may be in flight. Within it a path may make steps on its axes; a jump ends before a path's or piece's last tick
-// is taken, before the prescaler makes a path tick, before a step that could wait long at its shaper, and before a
-// ratio arrives or is another for the under-run guard.
+// A jump begins where nothing is decided: no swap, decode, access or step is under way, and the ratio is constant or
+// slews. Ticks may be in flight. Within a jump a path may make steps on its axes. The jump ends before the last tick
+// of a path or piece is taken, before the prescaler makes a path tick, before a step that could wait long at its
+// shaper, and before the ratio arrives or changes for the under-run guard.
 //
-// An accumulation of the feed generator at edge t that carries is a tick that is taken at t+5, reaches the prescaler at
+// If an accumulation of the feed generator at edge t carries, its tick is taken at t+5 and reaches the prescaler at
 // t+6 and the axes at t+9; its step shows on the path after edge t+12 and reaches the shaper at t+13. Ticks are
-// numbered from the oldest that was in flight as the jump began; edges are counted from that clock (0), those of ticks
-// in flight backwards. One object a jump; no allocation.
+// numbered from the oldest one in flight at the start of the jump. Edges are counted from that clock (0), those of
+// ticks in flight backwards. One object per jump; no allocation.
 //
-// On an arc in chords the axes step on the prescaler's path ticks, a clock later (t+10); a jump ends before the tick
+// On an arc in chords the axes step on the prescaler's path ticks, one clock later (t+10); a jump ends before the
+// tick that ends a half chord.
 // that ends a half chord.
 #pragma once
 
@@ -26,34 +27,34 @@ namespace trammel::skip {
 
 class Jump {
  public:
-  // `cycle`: edges so far; `limit`: clocks at most, below 2^46.
+  // `cycle`: edges so far; `limit`: maximum number of clocks, below 2^46.
   Jump(model::MotionCore& core, model::StepRecord& record, std::uint64_t cycle, std::uint64_t limit);
 
-  // Returns the clocks that are gone; 0 where it was not worth it.
+  // Returns the clocks passed; 0 if a jump is not worth its cost.
   std::uint64_t go();
 
  private:
   static constexpr std::uint64_t kNever = UINT64_MAX;
-  static constexpr std::int64_t kLastTake = 4;  // from an accumulation: the last edge before its tick is taken
-  // From the axis.
+  static constexpr std::int64_t kLastTake = 4;  // clocks from an accumulation to the last edge before its tick is taken
+  // Clocks from the arrival of a tick at the axis: to its step on the path, to the shaper.
   static constexpr std::int64_t kToPath = 3;
   static constexpr std::int64_t kToShaper = 4;
-  static constexpr std::int64_t kShortest = 16;
+  static constexpr std::int64_t kShortest = 16;  // clocks; shorter jumps without a step are not worth their cost
 
-  // An axis on its way. Its generator stands after `ticks` ticks, its shaper (the core's) at edge `edge`; it may have
-  // one step under way from there.
+  // The progress of an axis. Its generator has passed `ticks` ticks, and its shaper (in the core) is at edge `edge`.
+  // One step may be under way from there.
   struct AxisCursor {
-    std::uint64_t ticks = 0;      // of the axes: path ticks on an arc in chords
-    std::uint64_t at = 0;         // that which makes the next step
-    std::uint64_t next = kNever;  // number of the feed tick that it comes from
+    std::uint64_t ticks = 0;      // ticks of the axes: path ticks on an arc in chords
+    std::uint64_t at = 0;         // number of the axis tick that makes the next step
+    std::uint64_t next = kNever;  // number of the feed tick that causes it
     std::int64_t edge = 0;
     bool under_way = false;
     bool backwards = false;
-    bool path_due = false;  // reports that are still to be made
-    bool pin_due = false;
-    std::int64_t arrival = 0;  // of its tick at the axis
-    std::int64_t served = 0;   // the edge at which the pulse's leading edge shows
-    model::StepShaper after;   // the shaper then
+    bool path_due = false;     // the step's reports still to be made: on the path
+    bool pin_due = false;      // and at the pin
+    std::int64_t arrival = 0;  // edge at which the step's tick reaches the axis
+    std::int64_t served = 0;   // edge at which the leading edge of the pulse shows
+    model::StepShaper after;   // the shaper at edge `served`
   };
 
   std::uint64_t accumulations_to(std::int64_t edge) const;
@@ -79,28 +80,28 @@ class Jump {
   const std::uint64_t cycle_;
   std::int64_t end_;  // the edge at which the jump ends
   const bool ticking_;
-  const bool chords_;           // ticking on an arc in chords
-  const std::int64_t to_axis_;  // from an accumulation
+  const bool chords_;           // the path is an arc in chords
+  const std::int64_t to_axis_;  // clocks from an accumulation to the axes
   const std::uint64_t first_;   // accumulations at edge 1
-  const std::uint64_t second_;  // and at edge 2
-  unsigned in_flight_ = 0;      // as the jump begins: bit k from an accumulation at edge -k
+  const std::uint64_t second_;  // accumulations at edge 2
+  unsigned in_flight_ = 0;      // at the start of the jump: bit k belongs to an accumulation at edge -k
   std::array<std::int64_t, 9> flight_{};
-  std::size_t flying_ = 0;          // ticks that were in flight
+  std::size_t flying_ = 0;          // number of ticks in flight at the start
   std::uint64_t taken_before_ = 0;  // ticks of the path before tick 1
 
-  // The generator stands after so many accumulations and carries, the last at this edge.
+  // Accumulations and carries that the generator has made, and the edge of the last one.
   std::uint64_t done_ = 0;
   std::uint64_t made_ = 0;
   std::int64_t edge_ = 0;
 
-  std::int64_t looked_until_ = 0;  // the edge that the soft limits stand at
+  std::int64_t looked_until_ = 0;  // edge up to which the soft limits have advanced
   bool moved_ = false;
-  std::int64_t next_report_ = INT64_MAX;  // not later than the first report due
+  std::int64_t next_report_ = INT64_MAX;  // not later than the first report that is due
   unsigned axes_;
   std::array<AxisCursor, card_map::kMaxAxes> cursors_{};
 };
 
-// What of a jump's clocks `limit` may be gone under these inputs: from step to step; 0 where it is not worth it.
+// Passes up to `limit` clocks under these inputs, from step to step. Returns their number; 0 if not worth its cost.
 std::uint64_t advance(model::MotionCore& core, std::uint64_t limit, const model::MotionCore::Inputs& in,
                       std::uint64_t cycle, model::StepRecord& record);
 

@@ -1,4 +1,4 @@
-// Adaptors of the path engines and their parts, and what they do with ticks on their way: EngineTicks. See horizon.hpp.
+// Adaptors of the path engines and their parts. EngineTicks handles ticks on their way. See horizon.hpp.
 #pragma once
 
 #include <cstdint>
@@ -28,14 +28,14 @@ inline bool at_rest(const model::ArcGenerator& block) {
   const model::ArcGenerator::State& s = block.state();
   return s.out.load == 0 && s.out.swap == 0 && (!s.under_way || (s.left == 0 && s.begun && s.full_x && s.full_y));
 }
-// Path ticks up to the one that ends a half chord, that included; kForever where none does.
+// Path ticks up to and including the one that ends a half chord; kForever if none does.
 inline std::uint64_t ticks_left(const model::ArcGenerator& block) {
   const unsigned m = block.state().path.state.m;
   if (m < model::ArcGenerator::kMinChordBits) return kForever;
   const std::uint64_t half = std::uint64_t{1} << (m - 1);
   return half - (block.state().ticks & (half - 1));
 }
-// With `tick` each clock is a path tick.
+// With `tick` every clock is a path tick.
 inline std::uint64_t horizon(const model::ArcGenerator& block, const model::ArcGenerator::Inputs& in) {
   const model::ArcGenerator::State& s = block.state();
   if (in.clear || in.load.valid || in.start || !at_rest(block)) return 0;
@@ -45,11 +45,11 @@ inline void advance(model::ArcGenerator& block, const model::ArcGenerator::Input
   if (in.tick && block.state().under_way) block.state().ticks += clocks;
 }
 
-// The path runs on the arc generator: its axes step on path ticks.
+// True if the path runs on the arc generator: its axes step on path ticks.
 inline bool on_chords(const model::PathEngines& block) {
   return block.state().engine == card_map::engine::kArcGenerator;
 }
-// But for ticks on their way through the 3 clocks, nothing moves without inputs.
+// True if, without inputs, nothing moves except ticks on their way through the 3 clocks of delay.
 inline bool only_ticks_move(const model::PathEngines& block) {
   const model::PathEngines::State& s = block.state();
   if (!at_rest(s.arc) || s.over || s.over_next || (on_chords(block) && s.own_ticks != 0)) return false;
@@ -62,7 +62,7 @@ inline bool at_rest(const model::PathEngines& block) {
          s.out.done == block.said().ready && s.out.missed_end == !block.said().at_end && s.out.payload_ready;
 }
 
-// The outputs that follow the parts a clock late have arrived.
+// True if the outputs that follow the parts one clock late show their present state.
 inline bool shows_parts(const model::PathEngines& block) {
   const model::PathEngines::State& s = block.state();
   const model::DeviationAccumulator::Outputs& a = s.accumulator.outputs();
@@ -84,21 +84,22 @@ inline void advance(model::PathEngines&, const model::PathEngines::Inputs&, std:
 // Ticks on their way: bit k belongs to an accumulation of the feed generator k clocks ago.
 class EngineTicks {
  public:
-  // On an arc in chords.
+  // Ticks of an arc in chords that were passed.
   struct PathTicks {
     std::uint64_t at_axes = 0;
-    bool visible = false;  // and one more leaves
+    bool visible = false;  // one more tick is visible and leaves for the axes
   };
 
   explicit EngineTicks(model::PathEngines& block) : block_(block), s_(block.state()) {}
 
   unsigned in_flight() const { return (s_.ticks >> 2 & 1) << 6 | (s_.ticks >> 1 & 1) << 7 | (s_.ticks & 1) << 8; }
-  // The feed tick, from the prescaler's present state, before which a jump must end: on an arc in chords that which
-  // ends a half chord, else the first that makes a path tick.
+  // Number of the feed tick, from the prescaler's present state, before which a jump must end. On an arc in chords it
+  // is the one that ends a half chord, otherwise the first one that makes a path tick.
   std::uint64_t tick_that_stops() const {
     return PulsesAhead(s_.prescaler).ticks_until(on_chords(block_) ? ticks_left(s_.arc) : 1);
   }
-  // Before jump(): the path ticks of the `ticks` feed ticks that the prescaler took, of which these are on their way.
+  // To be called before jump(). Passes the `ticks` feed ticks that the prescaler took, of which those in `in_flight`
+  // are still on their way; returns their path ticks.
   PathTicks jump_chords(std::uint64_t ticks, unsigned in_flight) {
     PathTicks made;
     unsigned late = 0;
@@ -117,8 +118,8 @@ class EngineTicks {
     s_.arc.state().ticks += made.at_axes + s_.own_ticks;
     return made;
   }
-  // What shows after clocks in which the prescaler took `ticks`, without a step but on an arc in chords, and these are
-  // on their way (bit 9: the one before).
+  // The state after clocks in which the prescaler took `ticks`, with those of `in_flight` still on their way (bit 9:
+  // the one before). Except on an arc in chords the prescaler must make no step.
   void jump(std::uint64_t ticks, unsigned in_flight) {
     if (!on_chords(block_)) PulsesAhead(s_.prescaler).silent_ticks(ticks);
     s_.ticks = (in_flight >> 6 & 1) << 2 | (in_flight >> 7 & 1) << 1 | (in_flight >> 8 & 1);
@@ -132,7 +133,8 @@ class EngineTicks {
   }
 
  private:
-  // Clocks from an accumulation of the feed generator to the prescaler; from there to the axes on an arc in chords.
+  // Clocks from an accumulation of the feed generator to the prescaler, and from there to the axes on an arc in
+  // chords.
   static constexpr unsigned kPrescaled = 6;
   static constexpr unsigned kAtAxes = 4;
 

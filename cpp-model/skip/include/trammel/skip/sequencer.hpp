@@ -1,4 +1,4 @@
-// Adaptors of the sequencers and their parts, also with ticks on their way. See horizon.hpp.
+// Adaptors of the sequencers and their parts, also for clocks with ticks on their way. See horizon.hpp.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,11 @@ inline void advance(model::Sequencer& block, const model::Sequencer::Inputs&, st
   block.state().now += clocks;
 }
 
-// One clock, where nothing but ticks and counters move in it: true, and the state is that of clock(in).
+// One clock in which only ticks and counters move. Returns true and leaves the state of clock(in), or false if more
+// would move.
 bool count(model::Sequencer& block, const model::Sequencer::Inputs& in);
 
-// With ticks on their way: bit k of `in_flight` was made by an accumulation k clocks ago.
+// Positions of ticks on their way: bit k of `in_flight` belongs to an accumulation k clocks ago.
 inline constexpr unsigned kArrives = 3;
 inline constexpr unsigned kOwed = 4;
 inline constexpr unsigned kTaken = 5;
@@ -35,10 +36,12 @@ inline unsigned in_flight(const model::Sequencer& block) {
   const model::Sequencer::State& s = block.state();
   return (s.tick_arrives ? 1U << kArrives : 0) | (s.owed != 0 ? 1U << kOwed : 0) | (s.out.tick ? 1U << kTaken : 0);
 }
-// With these inputs, the enables and the ticks made apart, only counters move; for so many clocks at most.
+// True if these inputs, apart from enables and ticks made, move only counters. counting_clocks(): for how many clocks
+// at most.
 bool only_counts_move(const model::Sequencer& block, const model::Sequencer::Inputs& in);
 std::uint64_t counting_clocks(const model::Sequencer& block);
-// `clocks` at once in which `ticks` are taken, none of them a last one; what is then on its way.
+// Passes `clocks` clocks in which `ticks` are taken, none of them a last one; `in_flight`: ticks on their way
+// afterwards.
 void advance(model::Sequencer& block, std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable);
 
 }  // namespace trammel::skip

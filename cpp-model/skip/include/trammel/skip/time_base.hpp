@@ -1,4 +1,4 @@
-// Adaptor of the time base, with what it gives over many clocks: TimeBaseAhead. See horizon.hpp.
+// Adaptor of the time base. TimeBaseAhead computes its enables over many clocks. See horizon.hpp.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@ class TimeBaseAhead {
 
   explicit TimeBaseAhead(const model::TimeBase& block) : block_(block), s_(block.state()) {}
 
-  // Clocks that the functions below can go, while what `in` has stays and nothing is set: all of them when the
-  // ratio has arrived; while it slews those before it arrives, or comes into another 256th (rounded up; 0 is one by
-  // itself), which the under-run guard sees. 0 where it does neither yet.
+  // The number of clocks for which the functions below are valid, while `in` stays and nothing is set. After the
+  // ratio has arrived: all. While it slews: the clocks before it arrives, or enters another 256th (rounded up; 0 is
+  // one of its own), which the under-run guard sees. 0 if neither holds yet.
   std::uint64_t clocks_ahead(const model::TimeBase::Inputs& in) const {
     if (s_.goal != block_.goal(in.hold, in.piece_class) || s_.step != block_.step(in.slew_shift)) return 0;
     if (s_.next_ratio != (s_.turn == 1 || s_.turn == 2 ? s_.ratio : model::TimeBase::moved(s_.ratio, s_.goal, s_.step)))
@@ -27,11 +27,10 @@ class TimeBaseAhead {
     return slews() ? slewing_clocks() : kNever;
   }
 
-  // Enables that the next `clocks` clocks give.
+  // The number of enables in the next `clocks` clocks.
   std::uint64_t enabled_in(std::uint64_t clocks) const { return (s_.phase + added_in(clocks)) >> 16; }
 
-  // Clocks until `enables` more have been given, the last of them included; kNever when the ratio stays 0. enables <
-  // 2^47.
+  // Clocks up to and including the one of the `enables`-th enable; kNever if the ratio stays 0. enables < 2^47.
   std::uint64_t clocks_for(std::uint64_t enables) const {
     if (enables == 0) return 0;
     const std::uint64_t wanted = (enables << 16) - s_.phase;
@@ -40,7 +39,7 @@ class TimeBaseAhead {
     return (wanted + s_.outputs.ratio - 1) / s_.outputs.ratio;
   }
 
-  // The state after so many calls of clock().
+  // The state after this number of calls of clock().
   model::TimeBase::State after(std::uint64_t clocks) const {
     model::TimeBase::State s = s_;
     if (clocks == 0) return s;
@@ -58,9 +57,9 @@ class TimeBaseAhead {
  private:
   bool slews() const { return s_.ratio != s_.goal && s_.step != 0; }
   bool falls() const { return s_.goal < s_.ratio; }
-  // Clocks that add the ratio as it stands.
+  // Clocks that still add the present ratio.
   std::uint64_t before_update() const { return s_.turn == 0 ? 1 : model::TimeBase::kUpdate + 1 - s_.turn; }
-  // Before the update that arrives or leaves the 256th.
+  // Clocks before the update that arrives at the goal or leaves the 256th.
   std::uint64_t slewing_clocks() const {
     const std::uint32_t last = (s_.outputs.ratio + 255) / 256 * 256;
     const std::uint32_t first = last == 0 ? 0 : last - 255;
@@ -69,27 +68,27 @@ class TimeBaseAhead {
     const std::uint64_t updates = (within < to_goal ? within : to_goal) / s_.step;
     return before_update() + model::TimeBase::kUpdate * updates - 1;
   }
-  // The ratio after so many updates, none of which arrives.
+  // The ratio after this number of updates, none of which arrives.
   std::uint32_t slewed(std::uint64_t updates) const {
     if (!slews()) return s_.ratio;
     const auto way = static_cast<std::uint32_t>(updates * s_.step);
     return falls() ? s_.ratio - way : s_.ratio + way;
   }
-  // What the next `clocks` clocks add to the phase.
+  // The amount that the next `clocks` clocks add to the phase.
   std::uint64_t added_in(std::uint64_t clocks) const {
     if (!slews() || clocks <= before_update()) return clocks * s_.outputs.ratio;
     const std::uint64_t later = clocks - before_update();
     const std::uint64_t updates = later / model::TimeBase::kUpdate;
-    // Of s_.ratio -+ k * s_.step, k = 1 .. updates, counted from the lowest, in 2^-16.
+    // The sum of s_.ratio -+ k * s_.step for k = 1 .. updates, counted from the lowest, in 2^-16.
     const std::uint64_t lowest = updates == 0 ? 0 : falls() ? slewed(updates) : slewed(1);
     const std::uint64_t whole = sum_of_quotients(updates, std::uint64_t{1} << 12, s_.step, lowest);
     const std::uint64_t rest = later % model::TimeBase::kUpdate;
     return before_update() * s_.outputs.ratio + model::TimeBase::kUpdate * whole +
            (rest == 0 ? 0 : rest * (slewed(updates + 1) >> 12));
   }
-  // The sum of (a * i + b) / m, each rounded down, over i = 0 .. n - 1: whole parts apart, what is left counts the
-  // lattice points under a line, which are those beside it with the axes changed; so it goes down as the greatest
-  // common divisor of a and m does.
+  // The sum of floor((a * i + b) / m) over i = 0 .. n - 1. The whole parts of a / m and b / m are summed directly.
+  // The rest counts lattice points under a line; exchanging the axes turns that into the same problem with smaller
+  // numbers, so the loop proceeds like Euclid's algorithm for a and m.
   static std::uint64_t sum_of_quotients(std::uint64_t n, std::uint64_t m, std::uint64_t a, std::uint64_t b) {
     std::uint64_t sum = 0;
     for (;;) {
@@ -104,7 +103,7 @@ class TimeBaseAhead {
       std::swap(a, m);
     }
   }
-  // Between what the least and the largest ratio of the 256th would need.
+  // Binary search between the clocks that the smallest and the largest ratio of the 256th would need.
   std::uint64_t slewing_clocks_for(std::uint64_t wanted) const {
     const std::uint64_t largest = (s_.outputs.ratio + 255) / 256 * 256;
     if (largest == 0) return kNever;
@@ -124,7 +123,7 @@ class TimeBaseAhead {
   const model::TimeBase::State& s_;
 };
 
-// The enable stays only at the ratios 0 and 1.
+// The enable is constant only at the ratios 0 and 1.
 inline std::uint64_t horizon(const model::TimeBase& block, const model::TimeBase::Inputs& in) {
   const model::TimeBase::State& s = block.state();
   const bool arrived = s.ratio == s.goal && s.next_ratio == s.goal && s.outputs.ratio == s.goal >> 12;

@@ -1,4 +1,4 @@
-// Adaptor of the under-run guard, also with ticks taken. See horizon.hpp.
+// Adaptor of the under-run guard, also for clocks in which ticks are taken. See horizon.hpp.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace trammel::skip {
 
-// With these inputs nothing changes but counts, as long as fewer ticks are taken than ticks_to_change().
+// True if these inputs change nothing but counts, as long as fewer ticks are taken than ticks_to_change().
 inline bool only_counts_move(const model::UnderrunGuard& block, const model::UnderrunGuard::Inputs& in) {
   const model::UnderrunGuard::State& s = block.state();
   const bool follow = block.follows(in.active);
@@ -40,7 +40,7 @@ inline std::uint64_t ticks_to_change(const model::UnderrunGuard& block) {
   }
   return least;
 }
-// `clocks` at once, in which `ticks` are taken; bit k of `taken`: one in the clock before the last k.
+// Passes `clocks` clocks in which `ticks` are taken; bit k of `taken`: a tick was taken k clocks before the last one.
 inline void advance(model::UnderrunGuard& block, std::uint64_t clocks, std::uint64_t ticks, unsigned taken) {
   model::UnderrunGuard::State& s = block.state();
   const std::uint64_t to_pass = model::UnderrunGuard::kPass - 1 - s.round % model::UnderrunGuard::kPass;
