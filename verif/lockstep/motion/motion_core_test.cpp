@@ -19,35 +19,35 @@ void random_programs() {
   if (kEnables && kPwm) bench.pulses_while_drives_wait();
   // The directed scenarios above make most of the steps of a short run, and do not grow in a long one.
   const std::uint64_t directed_clocks = bench.check().cycles();
-  const std::uint64_t directed_steps = bench.steps();
+  const std::uint64_t directed_steps = bench.counts().steps;
   if (kPathCommands) {
     EXPECT_GT(directed_steps, 5000U);
   }
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
-  EXPECT_GT(bench.steps() - directed_steps, (length - directed_clocks) / 1000);
+  EXPECT_GT(bench.counts().steps - directed_steps, (length - directed_clocks) / 1000);
   if (kDirectMode) {
-    EXPECT_GT(bench.moves(), length / 20'000);
+    EXPECT_GT(bench.counts().moves, length / 20'000);
   }
-  EXPECT_GT(bench.faults(), length / 20'000);
-  EXPECT_GT(bench.lost_places(), length / 50'000);
+  EXPECT_GT(bench.counts().faults, length / 20'000);
+  EXPECT_GT(bench.counts().lost_places, length / 50'000);
   if (kPathCommands) {
-    EXPECT_GT(bench.marks(), length / 5000);
-    EXPECT_GT(bench.halts(), length / 20'000);
+    EXPECT_GT(bench.counts().marks, length / 5000);
+    EXPECT_GT(bench.counts().halts, length / 20'000);
   }
   if (kEnables) {
-    EXPECT_GT(bench.waits(), length / 2000);
+    EXPECT_GT(bench.counts().waits, length / 2000);
   }
   if (kMachineInputs) {
-    EXPECT_GT(bench.limits(), length / 60'000);
-    EXPECT_GT(bench.beyond(), length / 300'000);
+    EXPECT_GT(bench.counts().limits, length / 60'000);
+    EXPECT_GT(bench.counts().beyond, length / 300'000);
   }
   if (kSoftLimits) {
-    EXPECT_GT(bench.soft_limits(), length / 80'000);
+    EXPECT_GT(bench.counts().soft_limits, length / 80'000);
   }
   if (kStreaming) {
-    EXPECT_GT(bench.missing(), length / 200'000);
-    EXPECT_GT(bench.stale(), length / 5000);
+    EXPECT_GT(bench.counts().missing, length / 200'000);
+    EXPECT_GT(bench.counts().stale, length / 5000);
   }
 }
 
