@@ -1,4 +1,4 @@
-// 128-bit integers by their laws: nothing here needs a compiler that has its own.
+// 128-bit integers against the laws of arithmetic, so that the test needs no 128-bit type of the compiler.
 #include "trammel/driver/wide.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@ namespace trammel::driver {
 namespace {
 
 Uint128 any() { return {*rc::gen::arbitrary<std::uint64_t>(), *rc::gen::arbitrary<std::uint64_t>()}; }
-// Of any length.
+// A number of any length in bits.
 std::uint64_t any64() { return *rc::gen::arbitrary<std::uint64_t>() >> *rc::gen::inRange(0, 64); }
 
 TEST(Wide, Examples) {
@@ -30,7 +30,7 @@ TEST(Wide, Examples) {
 RC_GTEST_PROP(WideProperty, ProductsAddUpByDigits, ()) {
   const std::uint64_t a = any64();
   const std::uint64_t b = any64();
-  // Digits of 16 bits, one after the other: another way than the class's.
+  // Multiplication by digits of 16 bits, a method that differs from that of the class.
   Uint128 sum;
   for (unsigned digit = 0; digit < 4; ++digit) {
     const std::uint64_t part = b >> (16 * digit) & 0xFFFF;
