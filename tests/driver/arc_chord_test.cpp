@@ -61,7 +61,7 @@ TEST(ArcChord, ClockwiseIsTheMirrorImage) {
   EXPECT_NEAR(static_cast<double>(right.first_y), static_cast<double>(-left.first_y), 1);
 }
 
-// The sagitta of a chord is R (1 - cos(turn / 2)), about R / 2^(2k + 3); a chord of 16 pulses or less.
+// The sagitta of a chord is R (1 - cos(turn / 2)), about R / 2^(2k + 3). A chord has at most 16 pulses.
 TEST(ArcChord, TheSmallestShiftThatKeepsTheSagitta) {
   for (double radius = 1; radius < 2e9; radius *= 1.3) {
     const auto whole = static_cast<std::int64_t>(radius);

@@ -294,7 +294,7 @@ TEST(ArcCommand, SweepTellsShortFromFull) {
   g.end_y = 1;
   g.sweep = 0.01;
   EXPECT_EQ(prepare(g).path_ticks, 1u);
-  g.sweep = 2 * kPi - 0.01;  // the end is rounded past the start: one turn and a step
+  g.sweep = 2 * kPi - 0.01;  // rounding puts the end past the start: one turn and a step
   EXPECT_EQ(prepare(g).quadrants, 4);
   g.end_y = -1;  // behind the start
   // The mean radius is a little over 100, so the walk may turn at 101 on each axis crossing.

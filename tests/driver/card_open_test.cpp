@@ -166,8 +166,7 @@ const Malformed kMalformed[] = {
     {"EndlessFeed", reg::kFeedDepth, 0xFFFFFFFF, "FEED_DEPTH: 4294967295 halfwords"},
     {"StepTimes", reg::step_length(3), 0x10000, "STEP_LENGTH reads 0x00010000"},
     {"StepSpaces", reg::step_space(0), 0x20000, "STEP_SPACE reads 0x00020000"},
-    // Units: time_base is described by words 0 and 1, axes by 8 and 9, host_ports, which has no registers, by 12
-    // and 13.
+    // Units: words 0 and 1 describe time_base, words 8 and 9 axes, words 12 and 13 host_ports, which has no registers.
     {"NewerUnit", reg::descriptor(8), 0x00'04'20'05, "unit axes: version 2.0, this driver takes version 1"},
     {"OlderUnit", reg::descriptor(8), 0x00'04'0F'05, "unit axes: version 0.15, this driver takes version 1"},
     {"OtherAxes", reg::descriptor(8), 0x00'03'10'05, "unit axes: 3 instances, but AXES reads 4"},

@@ -76,7 +76,7 @@ RC_GTEST_PROP(IncrementProperty, IsTheNearest, ()) {
   const auto ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << *rc::gen::inRange(1, 41));
   const auto pulses = *rc::gen::inRange<std::uint64_t>(0, ticks + 1);
   const std::uint64_t share = rounded_share(pulses, ticks);
-  // 2^41 p + N - 1 >= 2 N share >= 2^41 p - N + 1, halves up.
+  // 2^41 p + N >= 2 N share >= 2^41 p - N + 1: halves are rounded up.
   const Uint128 twice = Uint128::product(2 * share, ticks);
   const Uint128 exact = Uint128(pulses) << 41;
   RC_ASSERT(twice <= exact + Uint128(ticks));

@@ -133,7 +133,7 @@ TEST(Cycle, UnderG91NewLevelsCountFromTheSameStart) {
   add_hole(steps, 1, 10, 6, 3, 6);
   add_hole(steps, 2, 6, 5, 2, 5);
   add_hole(steps, 3, 5, 5, 4, 5);
-  steps.push_back({kRapid, 3, 0, 8});  // G85
+  steps.push_back({kRapid, 3, 0, 8});  // the hole of G85
   steps.push_back({kRapid, 4, 0, 8});
   steps.push_back({kFeed, 4, 0, 6});
   steps.push_back({kFeed, 4, 0, 8});

@@ -104,7 +104,7 @@ TEST(LookAhead, CollinearBlocksTakeTheTimeOfOne) {
   ASSERT_EQ(many.size(), 101U);
   EXPECT_NEAR(seconds_of(many) / seconds_of(one), 1, 0.001);
   EXPECT_NEAR(feed_clocks(many) / feed_clocks(one), 1, 0.001);
-  // 0.2 s at 50 mm/s and a ramp of 0.05 s; starts and stops at the rate of one tick from rest save 0.3 ms each.
+  // 0.2 s at 50 mm/s and a ramp of 0.05 s. A start and a stop at the rate of one tick from rest each save 0.3 ms.
   EXPECT_NEAR(seconds_of(one), 0.25 - 0.0006, 0.0001);
   const std::vector<Planned> stops = blocks_of("G61.1\n" + line_of_chords(10, 0.1, 3000), machine);
   EXPECT_GT(seconds_of(stops), 1.9) << "exact stops";

@@ -33,7 +33,7 @@ std::string mixed_program(std::uint64_t seed) {
   return text;
 }
 
-// A raster over heights: blocks of 0.004 mm along X, with Z where the height changes slowly, walls as moves of Z alone,
+// A raster over heights: blocks of 0.004 mm along X, with Z where the height changes slowly; walls as moves of Z alone;
 // a step of 0.004 mm in Y at the end of each row.
 std::string relief(std::uint64_t seed) {
   constexpr double kStep = 0.004;

@@ -1,4 +1,4 @@
-// A card that homes: switches at its inputs follow the motors.
+// A card for tests of homing, with switches at its inputs that follow the motors.
 #pragma once
 
 #include <algorithm>
@@ -113,7 +113,8 @@ class BusWithSwitches final : public driver::Bus {
   bool looked_ = false;
 };
 
-// Home switches at inputs 0 (X), 1 (Y) and 2 (Z), an index of X at 3; X also at 4 for a second motor.
+// Home switches at inputs 0 (X), 1 (Y) and 2 (Z), and an index of X at 3. `more`: further entries, separated by ';'.
+// Tests with a second motor of X use input 4 for its home switch.
 inline machine::Machine homing_machine(const std::string& more = "") {
   machine::Machine machine = machine::default_machine();
   const auto set = [&](const std::string& text) { machine::apply_override(machine, text); };
