@@ -30,7 +30,7 @@ void bind_faults(nb::module_& m) {
   namespace field = card_map::field;
   nb::enum_<Fault>(m, "Fault", "Bits of masks of faults; bits 0 to 7 are step faults of the axes 0 to 7.",
                    nb::is_flag(), nb::is_arithmetic())
-      .value("STEPS", fault(field::kFaultStep), "A step of any axis came too early for too long.")
+      .value("STEPS", fault(field::kFaultStep), "A step of any axis had to wait too long, or too many steps waited.")
       .value("TICK_MISMATCH", fault(field::kFaultTickMismatch),
              "The ticks of feed and geometry did not match at a barrier.")
       .value("PATH_INCOMPLETE", fault(field::kFaultPathIncomplete), "A path did not end at its end point.")

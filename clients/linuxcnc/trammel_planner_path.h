@@ -10,7 +10,7 @@
 
 enum {
   KEPT = 4096,          /* segments; more than fit in the ring and the owner's queue */
-  MOST_QUEUED = 1500,   /* limit of segments not begun; above it LinuxCNC has to wait */
+  MOST_QUEUED = 1500,   /* limit of segments that have not started; above it LinuxCNC has to wait */
   RING_RESERVE = 64,    /* slots for operations other than segments */
   SILENT_PERIODS = 2000 /* silent periods after which the owner counts as gone or stopped */
 };
@@ -28,7 +28,7 @@ struct segment {
 static struct ring ring;
 static struct segment segments[KEPT];            /* by segment number */
 static unsigned char waits[TRAMMEL_OPERATIONS];  /* by slot: condition for its publication */
-static uint64_t posted, begun;                   /* segments */
+static uint64_t posted, begun;                   /* numbers of segments posted and of segments started */
 static uint64_t in_force_at, pose_in_force_at;   /* operations_done from which abort, clear or pose is in force */
 static uint64_t probes, refusals, session, beat; /* values seen last */
 static unsigned silent = SILENT_PERIODS + 1;     /* periods without a new beat */
@@ -84,8 +84,8 @@ static void forget_unpublished(void) {
   }
 }
 
-/* Sends requests that motmod may make outside of coordinated mode, when no period runs here. The last request counts.
- */
+/* Sends the pending requests. motmod may make requests outside of coordinated mode, when no period runs here. The last
+   request counts. */
 static void flush_pending(void) {
   struct trammel_operation* operation;
   if (clear_pending && (operation = ring_slot(&ring, TRAMMEL_CLEAR)) != NULL) {

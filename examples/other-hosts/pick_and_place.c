@@ -1,13 +1,13 @@
-/* Pick and place, as OpenPnP drives a machine: a head goes from point to point in several axes, and switches its
+/* Pick and place, as OpenPnP drives a machine: a head moves from point to point in several axes and switches its
    vacuum.
 
-       pick_and_place [URL]         URL: of the card (docs/reference/card-url.md); a simulated one without it
+       pick_and_place [URL]         URL: of the card (docs/reference/card-url.md); default: a simulated card
 
-   A move is a straight line of all axes from rest to rest. It may have via points, at which outputs switch without a
-   stop: the card switches them with the last tick of the path before, wherever holds and overrides have put that in
-   time. The vacuum comes on 1 mm above a part, so that it has built up when the nozzle touches, and goes off where the
-   nozzle stands on the board, with a puff of air until it is 0.5 mm above. With a card simulated in this process, the
-   pulses say where each output switched. */
+   A move is a straight line of all axes from rest to rest. Outputs can switch at via points on it without a stop: the
+   card switches them with the last tick of the preceding path, so holds and overrides do not change the position. The
+   vacuum comes on 1 mm above a part, so that it has built up when the nozzle touches the part. It goes off when the
+   nozzle is at rest on the board, with a puff of air until the nozzle is 0.5 mm above the board. If the card is
+   simulated in this process, its pulses show whether each output switched at the right position. */
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +17,7 @@ enum { X, Y, Z, C, AXES };
 enum { VACUUM = 1 << 0, PUFF = 1 << 1 }; /* outputs 0 and 1 */
 
 static const double pulses_per_unit[AXES] = {80, 80, 400, 3200 / 360.0}; /* mm, mm, mm, degrees */
-static const double travel_height = 0;                                   /* of Z; down is negative */
+static const double travel_height = 0;                                   /* mm; down is negative */
 
 typedef struct place {
   double at[AXES];
@@ -38,7 +38,7 @@ static const part parts[] = {
 typedef struct machine {
   trammel_card* card;
   uint32_t clock_hz;
-  int64_t pulses[AXES]; /* where the axes will be, from the begin of the program */
+  int64_t pulses[AXES]; /* positions after the commands so far, from the start of the program */
 } machine;
 
 static void put_piece(machine* is, uint64_t ticks, double speed, double end_speed) {
@@ -50,7 +50,7 @@ static void put_piece(machine* is, uint64_t ticks, double speed, double end_spee
   must(trammel_put(is->card, &feed));
 }
 
-/* A trapezoid from rest to rest over so many ticks. `speed` is in ticks/s, `acceleration` in ticks/s^2. */
+/* A trapezoid from rest to rest that takes `ticks` ticks. `speed` is in ticks/s, `acceleration` in ticks/s^2. */
 static void put_trapezoid(machine* is, uint64_t ticks, double speed, double acceleration) {
   const double peak = fmin(speed, sqrt(acceleration * (double)ticks));
   const uint64_t ramp = (uint64_t)fmin(floor(peak * peak / (2 * acceleration)), (double)(ticks / 2));
@@ -84,8 +84,8 @@ static void put_dwell(machine* is, double seconds) {
   must(trammel_put(is->card, &dwell));
 }
 
-/* Moves to `to` at `speed` and `acceleration` (mm/s, mm/s^2 along the path; degrees where C alone moves). At the share
-   `via` of the way, 0 < via < 1, the outputs switch in motion; at 0 none do. */
+/* Moves to `to` at `speed` and `acceleration` (mm/s and mm/s^2 along the path; degrees if only C moves). `via`: the
+   fraction of the way, between 0 and 1, at which the outputs switch in motion; 0: no switching. */
 static void move_to(machine* is, const place* to, double speed, double acceleration, double via, uint16_t set,
                     uint16_t clear) {
   int64_t target[AXES], middle[AXES];
@@ -107,7 +107,7 @@ static void move_to(machine* is, const place* to, double speed, double accelerat
   length = sqrt(length);
   if (length == 0) length = turn;
   if (length == 0) return;
-  ticks_per_unit = floor(is->clock_hz / 2.0 / speed); /* a tick in two clocks at full speed */
+  ticks_per_unit = floor(is->clock_hz / 2.0 / speed); /* one tick per two clocks at full speed */
   ticks = (uint64_t)llround(length * ticks_per_unit);
   put_trapezoid(is, ticks, speed * ticks_per_unit, acceleration * ticks_per_unit);
   before = (uint64_t)llround(via * (double)ticks);
@@ -118,7 +118,7 @@ static void move_to(machine* is, const place* to, double speed, double accelerat
   put_line(is, ticks - before, target);
 }
 
-/* The X, Y and C of `at`, at the height of Z. */
+/* The X, Y and C of `at` with Z at `height`. */
 static place above(const place* at, double height) {
   place over = *at;
   over.at[Z] = height;
@@ -134,14 +134,15 @@ static void place_part(machine* is, const part* one) {
   put_dwell(is, 0.02);
   move_to(is, &over, 50, 1500, 0, 0, 0);
   over = above(&one->board, travel_height);
-  move_to(is, &over, 200, 3000, 0, 0, 0); /* C turns on the way */
+  move_to(is, &over, 200, 3000, 0, 0, 0); /* C turns during this move */
   move_to(is, &one->board, 50, 1500, 0, 0, 0);
   put_outputs(is, PUFF, VACUUM);
   put_dwell(is, 0.01);
   move_to(is, &over, 50, 1500, 0.5 / up, 0, PUFF);
 }
 
-/* Three changes for each part: where they come, by the pulses of all axes until then, and whether in motion. */
+/* Each part causes three changes. Checks the levels of each change, the positions of all axes at it, and whether Z was
+   in motion. */
 static void check_outputs(const pulses* record, uint32_t clock_hz) {
   static const uint16_t levels[] = {VACUUM, PUFF, 0};
   size_t i;

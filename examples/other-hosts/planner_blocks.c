@@ -1,11 +1,12 @@
-/* A planner of somebody else's above the card: its finished blocks go to the card, which makes exactly their steps.
+/* Another host's planner drives the card: the card makes exactly the steps of the planner's finished blocks.
 
-       planner_blocks [URL]         URL: of the card (docs/reference/card-url.md); a simulated one without it
+       planner_blocks [URL]         URL: of the card (docs/reference/card-url.md); default: a simulated card
 
-   A block has the fields that a planner of the Grbl family fills: steps and direction of each axis, speed at entry,
-   acceleration, programmed rate and length. Its exit speed is the next one's entry speed, and a block is finished when
-   the planner will not change these any more. A block becomes one LINE and up to three pieces of FEED: acceleration,
-   programmed rate, deceleration. With a card simulated in this process, every step is checked, in place and time. */
+   A block has the fields that planners of the Grbl family fill: steps and direction of each axis, entry speed,
+   acceleration, programmed rate and length. Its exit speed is the entry speed of the next block. A block is finished
+   when the planner will not change these speeds any more. A block becomes one LINE and up to three FEED pieces:
+   acceleration, programmed rate, deceleration. If the card is simulated in this process, axis, direction and time of
+   every step are checked. */
 #include <math.h>
 #include <string.h>
 
@@ -15,10 +16,10 @@
 
 typedef struct planner_block {
   uint32_t steps[AXES];
-  uint32_t step_event_count; /* the largest of them */
-  uint8_t direction_bits;    /* bit n: axis n goes in its negative direction */
+  uint32_t step_event_count; /* largest element of `steps` */
+  uint8_t direction_bits;    /* bit n: axis n moves in its negative direction */
   float entry_speed_sqr;     /* (mm/min)^2 */
-  float max_entry_speed_sqr; /* the planner's own bound of it */
+  float max_entry_speed_sqr; /* limit of the entry speed, computed by the planner */
   float acceleration;        /* mm/min^2 */
   float programmed_rate;     /* mm/min */
   float millimeters;
@@ -26,9 +27,9 @@ typedef struct planner_block {
 
 #define SQUARE(rate) ((float)(rate) * (float)(rate))
 #define ACCELERATION 1800000.0f /* 500 mm/s^2 */
-#define FASTEST 3000.0f         /* mm/min, of all blocks */
+#define FASTEST 3000.0f         /* mm/min, highest programmed_rate of all blocks */
 
-/* 80 steps/mm in X and Y, 400 in Z. Some blocks reach their rate, some do not, one is a fraction of a millimetre. */
+/* 80 steps/mm in X and Y, 400 in Z. Some blocks reach their programmed rate, some do not; one is shorter than 1 mm. */
 static const planner_block program[] = {
     {{800, 0, 0}, 800, 0, 0, 0, ACCELERATION, 2400, 10},
     {{480, 640, 0}, 640, 0, SQUARE(1800), SQUARE(2000), ACCELERATION, 3000, 10},
@@ -38,13 +39,13 @@ static const planner_block program[] = {
     {{1040, 984, 1200}, 1200, 2, 0, 0, ACCELERATION, 3000, 18.1446f},
 };
 #define BLOCKS (sizeof program / sizeof *program)
-/* What they take, as calculated by hand. */
+/* Durations of the blocks in seconds, calculated by hand. */
 static const double seconds[BLOCKS] = {0.2925, 0.2100, 0.0078, 0.1653, 0.3200, 0.4629};
 
-/* A block's speeds in mm/s, and where along it they change. */
+/* The speeds of a block, and the distances at which the speed profile changes. */
 typedef struct profile {
   double entry, peak, exit;      /* mm/s */
-  double accelerated, braked_at; /* mm from its begin */
+  double accelerated, braked_at; /* mm from the start of the block */
   double acceleration;           /* mm/s^2 */
   double length;                 /* mm */
 } profile;
@@ -56,7 +57,7 @@ static profile profile_of(const planner_block* block, float exit_speed_sqr) {
   double peak_sqr;
   is.length = block->millimeters;
   is.acceleration = block->acceleration / 3600.0;
-  peak_sqr = (entry_sqr + exit_sqr) / 2 + is.acceleration * is.length; /* where both ramps meet */
+  peak_sqr = (entry_sqr + exit_sqr) / 2 + is.acceleration * is.length; /* where acceleration and deceleration meet */
   is.peak = fmin(block->programmed_rate / 60.0, sqrt(peak_sqr));
   is.entry = sqrt(entry_sqr);
   is.exit = sqrt(exit_sqr);
@@ -65,7 +66,8 @@ static profile profile_of(const planner_block* block, float exit_speed_sqr) {
   return is;
 }
 
-/* How the card counts: one number of feed ticks per mm for all blocks, so that the fastest has a tick in two clocks. */
+/* Scale of feed ticks. All blocks use the same number of ticks per mm, chosen for one tick per two clocks at the
+   highest speed. */
 typedef struct tick_scale {
   uint32_t clock_hz;
   double ticks_per_mm;
@@ -86,7 +88,7 @@ static void put_piece(trammel_card* card, const tick_scale* scale, uint64_t tick
   must(trammel_put(card, &feed));
 }
 
-/* Waits where the card's queues are full: that is what holds the planner back. */
+/* Waits while the card's queues are full, which limits the planner to the card's pace. */
 static void put_block(trammel_card* card, const tick_scale* scale, const planner_block* block, float exit_speed_sqr) {
   const profile is = profile_of(block, exit_speed_sqr);
   const uint64_t accelerated = (uint64_t)llround(is.accelerated * scale->ticks_per_mm);
@@ -105,7 +107,7 @@ static void put_block(trammel_card* card, const tick_scale* scale, const planner
   must(trammel_put(card, &line));
 }
 
-/* Seconds from the block's begin to a distance in mm. */
+/* Time in seconds from the start of the block to `distance` in mm. */
 static double time_at(const profile* is, double distance) {
   const double up = fmin(distance, is->accelerated);
   const double even = fmin(distance, is->braked_at) - up;
@@ -119,8 +121,9 @@ static double time_at(const profile* is, double distance) {
 
 static float exit_speed_sqr_of(size_t block) { return block + 1 < BLOCKS ? program[block + 1].entry_speed_sqr : 0; }
 
-/* One block's steps, of which record->steps[*next] is the first: as many as it says, in its directions, each of the
-   axis with most steps at its time. Gives back the largest error of time, in seconds. */
+/* Checks the steps of one block, from record->steps[*next] on: their number, their directions, and the time of each
+   step of the axis with the most steps. Advances *next to the next block. Returns the largest error of time, in
+   seconds. */
 static double check_block(const pulses* record, size_t* next, size_t block, double begin, uint32_t clock_hz) {
   const planner_block* const is = &program[block];
   const profile speeds = profile_of(is, exit_speed_sqr_of(block));
@@ -144,8 +147,9 @@ static double check_block(const pulses* record, size_t* next, size_t block, doub
   return worst;
 }
 
-/* From the first step on, which tells when the card has begun. The last tick before a rest comes early, by half of the
-   time that it takes at the speed there; what is rounded to ticks and clocks stays below 0.05 ms and 50 clocks. */
+/* Times count from the first step, because it tells when the card started. The last tick before a stop comes early, by
+   half of its duration at the low speed there. The errors from rounding to ticks and clocks are below 0.05 ms and 50
+   clocks. */
 static void check_pulses(const pulses* record, const tick_scale* scale) {
   profile is = profile_of(&program[0], exit_speed_sqr_of(0));
   const double at_rest = 1 / sqrt(is.acceleration * scale->ticks_per_mm);

@@ -1,12 +1,14 @@
-// A trajectory of points with times, positions and velocities, as trajectory_msgs/JointTrajectory of ROS 2 has them,
-// followed by position streaming: every millisecond the card gets where the joints shall be at the period's end.
+// Follows a trajectory by position streaming: every millisecond the card gets the joints' targets for the end of the
+// next period. The trajectory has points with times, positions and velocities, like trajectory_msgs/JointTrajectory of
+// ROS 2.
 //
-//     trajectory [URL]         URL: of the card (docs/reference/card-url.md); a simulated one without it
+//     trajectory [URL]         URL: of the card (docs/reference/card-url.md); default: a simulated card
 //
-// Between two points a joint follows the cubic of their positions and velocities. Points come one by one, and one may
-// be late: the card goes on along its line for kStalePeriods, then it ramps down, and the rest begins where it stands.
-// The trajectory is followed three times: in time, with a point late by 6 ms, and with one late by 200 ms. With a card
-// simulated in this process, the pulses are checked: positions at the times of the points, and the lines gone on.
+// Between two points a joint follows the cubic given by their positions and velocities. Points arrive one by one, and
+// one may be late. The card then continues along its line for kStalePeriods and ramps down; the remaining trajectory
+// begins where the card stopped. The trajectory is followed three times: without delay, with a point late by 6 ms, and
+// with a point late by 200 ms. If the card is simulated in this process, its pulses are checked: the positions at the
+// points' times, and the lines along which it continued.
 #include "trajectory.hpp"
 
 #include <cstdio>
@@ -20,7 +22,7 @@
 namespace trajectory {
 namespace {
 
-// The third one's time is no multiple of the period.
+// The third point's time is not a multiple of the period.
 const std::vector<Point> kPoints = {{0ms, {0, 0, 0}, {0, 0, 0}},
                                     {400ms, {0.3, -0.2, 0.1}, {1.2, -0.6, 0.2}},
                                     {750'400us, {0.7, -0.35, 0.1}, {1.0, -0.2, -0.3}},
@@ -28,7 +30,7 @@ const std::vector<Point> kPoints = {{0ms, {0, 0, 0}, {0, 0, 0}},
                                     {1600ms, {0.9, 0.0, -0.2}, {-0.5, 0.6, 0}},
                                     {2000ms, {0.8, 0.2, -0.2}, {0, 0, 0}}};
 
-// The points that have come, of which the last two count.
+// The points that have arrived. Only the last two are needed.
 class Trajectory {
  public:
   explicit Trajectory(const Point& begin) : from_(begin), to_(begin) {}
@@ -38,8 +40,8 @@ class Trajectory {
     from_ = to_;
     to_ = point;
   }
-  // The joints stood at `place` when the segment went on without them: they begin anew there, at `time`, and take the
-  // segment's whole time to its end. All later points are put off likewise.
+  // Restarts the last segment at `time` and `place`, after the card stopped there. The segment keeps its full duration,
+  // so its end and all later points are delayed by the same time.
   void begin_anew(nanoseconds time, const Joints& place) {
     const nanoseconds segment = to_.time_from_start - from_.time_from_start;
     shift_ += time + segment - to_.time_from_start;
@@ -47,7 +49,7 @@ class Trajectory {
     to_.time_from_start = time + segment;
   }
   nanoseconds end() const { return to_.time_from_start; }
-  // Of the last segment.
+  // Position on the last segment.
   Joints at(nanoseconds time) const {
     const double duration = seconds(to_.time_from_start - from_.time_from_start);
     const double s = duration == 0 ? 1 : seconds(time - from_.time_from_start) / duration;
@@ -80,8 +82,8 @@ Joints joints_of(const PositionStream::Positions& positions) {
   return place;
 }
 
-// Follows the points, of which the one with the number `late_point` comes so much too late. Positions are counted from
-// where the joints stand at the begin.
+// Follows the points. The point with the number `late_point` arrives `late` after its time. Positions count from the
+// joints' positions at the start.
 Followed follow(Card& card, const std::vector<Point>& points, std::size_t late_point, nanoseconds late) {
   PositionStreamOptions options;
   options.ahead = kAhead;
@@ -91,7 +93,7 @@ Followed follow(Card& card, const std::vector<Point>& points, std::size_t late_p
   Followed followed;
   PositionStream::Positions line_begin{}, line_end{};
   std::size_t next = 1;
-  nanoseconds time{0};  // at the end of the last period sent
+  nanoseconds time{0};  // end of the last period sent
   while (time < trajectory.end() || next < points.size()) {
     while (time + kPeriod > trajectory.end() && next < points.size()) {
       if (next == late_point) card.bus().sleep(late);  // a subscriber would wait for its message here
@@ -108,15 +110,16 @@ Followed follow(Card& card, const std::vector<Point>& points, std::size_t late_p
       time += kPeriod;
       if (stream.ticks_behind() != 0) followed.back = time + kPeriod;
       std::tie(line_begin, line_end) = std::tie(line_end, target);
-      // As many are queued as shall be: a period later one of them is over, half a period while it makes up time.
+      // The queue is full enough: one period later a queued period has ended. While the stream catches up, its periods
+      // are shorter, so wait for half a period.
       if (sent.ahead >= kAhead) card.bus().sleep(stream.ticks_behind() != 0 ? kPeriod / 2 : kPeriod);
     } catch (const FaultError& error) {
       if ((error.faults() & trammel::card_map::field::kFaultMissingPeriod) == 0) throw;
-      followed.stopped = stream.recover();  // the card stands
+      followed.stopped = stream.recover();  // waits until the card is at rest
       followed.stopped_by = card.read_snapshot().time;
       followed.stale_ticks = followed.stopped->stale_ticks;
       followed.late = time;
-      followed.back = nanoseconds::max();  // the later points have other times now
+      followed.back = nanoseconds::max();  // the later points are delayed
       std::tie(followed.line_begin, followed.line_end) = std::tie(line_begin, line_end);
       trajectory.begin_anew(time, joints_of(followed.stopped->positions));
     }
@@ -125,7 +128,7 @@ Followed follow(Card& card, const std::vector<Point>& points, std::size_t late_p
   return followed;
 }
 
-// Follows the points, and gives back whether the joints ended on the last one, and all pulses were right.
+// Follows the points. Returns true if the joints ended on the last point and all pulses were right.
 bool run(trammel::transport::Connection& connection, Card& card, const std::vector<Point>& points,
          std::size_t late_point, nanoseconds late) {
   Record record;
@@ -154,8 +157,8 @@ int main(int argc, char** argv) try {
   using namespace trajectory;
   trammel::transport::Connection connection(trammel::transport::parse_card_url(argc > 1 ? argv[1] : "sim:"));
   Card card = Card::open(connection.bus());
-  card.take_over();  // a served card holds when a client has gone
-  for (unsigned j = 0; j < kJoints; ++j) card.configure_axis(j, {2us, 2us, 2us, 2us});  // of the drives' data sheet
+  card.take_over();  // a served card holds after its client has disconnected
+  for (unsigned j = 0; j < kJoints; ++j) card.configure_axis(j, {2us, 2us, 2us, 2us});  // from the drives' data sheet
   begin_at_place(card, (1U << kJoints) - 1);
   card.set_slew_time(kSlewTime);
   std::vector<Point> back = kPoints;

@@ -1,4 +1,5 @@
-// What the two sources of the example trajectory share: its numbers, and the record of a simulated card's pulses.
+// Declarations shared by the two source files of the example trajectory: its constants, and the record of a simulated
+// card's pulses.
 #pragma once
 
 #include <array>
@@ -20,9 +21,9 @@ using std::chrono::nanoseconds;
 constexpr unsigned kJoints = 3;
 constexpr std::array<double, kJoints> kPulsesPerRadian = {2546.479, 2546.479, 1273.240};
 constexpr nanoseconds kPeriod = 1ms;
-constexpr unsigned kAhead = 2;           // periods that the card has queued
-constexpr unsigned kStalePeriods = 10;   // that it goes on for without a new one
-constexpr nanoseconds kSlewTime = 20ms;  // of a ramp from full speed
+constexpr unsigned kAhead = 2;           // periods to keep queued in the card
+constexpr unsigned kStalePeriods = 10;   // periods for which the card continues when no new one comes
+constexpr nanoseconds kSlewTime = 20ms;  // duration of a ramp from full speed to rest
 
 using Joints = std::array<double, kJoints>;
 
@@ -36,16 +37,16 @@ inline double seconds(nanoseconds time) { return std::chrono::duration<double>(t
 inline double pulses_of(std::int64_t position) { return static_cast<double>(position) / PositionStream::kPulse; }
 inline double in_pulses(const Joints& place, unsigned joint) { return place[joint] * kPulsesPerRadian[joint]; }
 
-// What became of a trajectory.
+// Result of following a trajectory.
 struct Followed {
-  std::uint64_t stale_ticks = 0;                       // that the card went on for, waiting for a point
-  nanoseconds late{0}, back{0};                        // from this time of the trajectory to that one
-  std::optional<PositionStream::Stopped> stopped;      // where it stood when it had ramped down
-  std::uint64_t stopped_by = 0;                        // a clock in which it did
-  PositionStream::Positions line_begin{}, line_end{};  // the last period before that
+  std::uint64_t stale_ticks = 0;                       // ticks for which the card continued while it waited for a point
+  nanoseconds late{0}, back{0};                        // trajectory times between which the card was behind the points
+  std::optional<PositionStream::Stopped> stopped;      // positions at rest, after a ramp down
+  std::uint64_t stopped_by = 0;                        // a clock at which the card was at rest
+  PositionStream::Positions line_begin{}, line_end{};  // the last period before the late point
 };
 
-// What a simulated card's pins and paths have done.
+// Pulses at the pins and steps of the paths of a simulated card.
 struct Record final : StepSink {
   void pin_step(const PinStep& step) override { pins[step.axis] += step.direction; }
   void path_step(const PathStep& step) override { path.push_back(step); }
@@ -54,8 +55,8 @@ struct Record final : StepSink {
   std::array<std::int64_t, trammel::card_map::kMaxAxes> pins{};
 };
 
-// Checks where the joints were at the times of the points, and the line that the card went on along. Prints what does
-// not hold, and gives back how many checks have failed so far.
+// Checks the joints' positions at the times of the points, and the line along which the card continued. Prints each
+// failed check. Returns the number of all failed checks so far.
 int check_pulses(const Record& record, const Followed& followed, const std::vector<Point>& points, nanoseconds late,
                  double clock_hz);
 

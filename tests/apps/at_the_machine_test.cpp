@@ -1,4 +1,4 @@
-// `trammel world`: the machine behind a served card, while others use the card.
+// `trammel world`: the machine behind a served card, while other clients use the card.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -25,7 +25,7 @@ class AtTheMachine : public ::testing::Test {
   nlohmann::json state() const {
     return nlohmann::json::parse(command_.run("world --json --card " + server_.url()).out, nullptr, false);
   }
-  // A program of one line; a jog asks more often how far it is.
+  // Moves by a program of one line. A jog would poll the card more often.
   Outcome move(const std::string& words, const std::string& options = "") const {
     return command_.run("run " + command_.write("move.ngc", "G91\nG1 " + words + " F6000\n") + " " + options +
                         " --card " + server_.moving());
@@ -72,7 +72,7 @@ TEST_F(AtTheMachine, APressInMidMotion) {
   EXPECT_THAT(contents(command_.path("press.out")), HasSubstr("pressed   estop\n"));
   const double at = state()["axes"][0]["commanded_mm"].get<double>();
   EXPECT_GT(at, 5);
-  EXPECT_LT(at, 8);  // at 100 mm/s in a turn of the server, 5 ms, and as far again by its accesses
+  EXPECT_LT(at, 8);  // at 100 mm/s: 5 ms for a turn of the server, and as much for its accesses
 }
 
 TEST_F(AtTheMachine, WhatIsNotThereIsRefusedByName) {
@@ -101,8 +101,8 @@ TEST_F(AtTheMachine, AWaitEndsAndItsPressIsForgotten) {
   EXPECT_TRUE(state()["pressed"].empty());
 }
 
-// Beside a run three threads look and press without a pause: the path is the undisturbed one, and each of their answers
-// is whole and of one moment.
+// During a run three threads read and press without a pause. The path is the undisturbed one, and each answer is
+// complete and consistent.
 TEST_F(AtTheMachine, ManyAtOnceDisturbNoRun) {
   std::string program = "F3000\n";
   for (int i = 1; i <= 40; ++i) program += "G1 X" + std::to_string(i % 7) + " Y" + std::to_string(i % 5) + "\n";
@@ -137,7 +137,7 @@ TEST_F(AtTheMachine, ManyAtOnceDisturbNoRun) {
   EXPECT_EQ(path_line(server_.end()), path_line(other.end()));
 }
 
-// The page's text in Python.
+// Runs the page's Python example.
 TEST_F(AtTheMachine, AnyLanguageWithASocket) {
   const std::string page = contents(TRAMMEL_EXAMPLES_DIR "/../docs/user/world.md");
   const std::size_t from = page.find("```python\n");

@@ -14,7 +14,7 @@
 
 namespace trammel::test {
 
-// Carries bytes, and cuts the first `cuts` connections after so many. A client that connects anew is carried again.
+// Carries bytes, and cuts each of the first `cuts` connections after `bytes` bytes. Later connections are carried too.
 class BadCable {
  public:
   explicit BadCable(const std::string& server_url, std::uint64_t bytes = 0, unsigned cuts = 0)
@@ -24,7 +24,7 @@ class BadCable {
     thread_.join();
   }
   std::string url() const { return listener_->url(); }
-  // How often it was cut.
+  // Number of cuts so far.
   unsigned cuts() const { return made_; }
   void cut() { cut_now_ = true; }
 

@@ -1,4 +1,4 @@
-// What the command says to input it cannot use: one line, the right exit status, and nothing moves.
+// Input that the command cannot use: it prints one line, has the right exit status, and moves nothing.
 #include <gtest/gtest.h>
 
 #include "command.hpp"
@@ -17,14 +17,14 @@ void expect_refused(const Command& command, const std::string& arguments, int st
 struct Bad {
   const char* name;
   const char* program;
-  const char* where;  // what the message must name
+  const char* where;  // position that the message must name
 };
-// In the names of the tests.
+// Prints the name in the names of the tests.
 void PrintTo(const Bad& row, std::ostream* out) { *out << row.name; }
 
 class BadProgram : public testing::TestWithParam<Bad> {};
 
-// A sound move comes first: it must not be made either.
+// A valid move comes first. It must not be made either.
 TEST_P(BadProgram, IsRefusedBeforeTheFirstStep) {
   const Command command;
   const std::string file = command.write("bad.ngc", std::string("G21 G90\nG0 X1\n") + GetParam().program + "\n");

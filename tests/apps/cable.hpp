@@ -1,4 +1,4 @@
-// A cable between a client and a server that a test cuts and mends.
+// A cable between a client and a server that a test cuts and repairs.
 #pragma once
 
 #include <atomic>
@@ -14,13 +14,13 @@
 
 namespace trammel::test {
 
-// Carries bytes for one client at a time, in a thread of its own.
+// Carries bytes for one client at a time, in its own thread.
 class Cable {
  public:
   enum class State {
     kWhole,
-    kClosed,  // both ends see their connections close, and new ones too
-    kSilent,  // nothing comes through and nothing closes; new connections are accepted
+    kClosed,  // both ends see their connections close; new connections are closed too
+    kSilent,  // nothing is carried and nothing closes; new connections are accepted
   };
 
   explicit Cable(const std::string& server_url)
@@ -33,7 +33,7 @@ class Cable {
   Cable& operator=(const Cable&) = delete;
 
   std::string url() const { return listener_->url(); }
-  // Connections of before are closed when it is whole again.
+  // Earlier connections are closed when the cable is whole again.
   void set(State state) { state_ = state; }
 
  private:
@@ -51,7 +51,7 @@ class Cable {
       pause();
     }
   }
-  // To the cut, or until an end closes.
+  // Carries until the cable is cut or one end closes.
   void carry(transport::ByteStream& client) {
     try {
       const Stream server = transport::connect_tcp(server_.host, server_.port, std::chrono::seconds(5));

@@ -1,4 +1,4 @@
-// `trammel calibrate` from outside: the file that it writes, and what a card says of its place afterwards.
+// The command `trammel calibrate`: the file that it writes, and the card's place afterwards.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -34,7 +34,7 @@ TEST_F(CalibrateCommand, SaysTheLineAndWritesNothing) {
   EXPECT_THAT(outcome.err, HasSubstr("`trammel zero` with all axes where they stand, then home again"));
   EXPECT_THAT(outcome.err, HasSubstr("min and max and [homing] distances of axis X"));
   EXPECT_EQ(contents(file_), before_);
-  // Without a machine file it is the built-in one, which cannot be written.
+  // The built-in machine file cannot be written.
   EXPECT_THAT(command_.run("calibrate X 100 99.2 --machine built-in").out, HasSubstr("80 -> 80.64516"));
   EXPECT_EQ(command_.run("calibrate X 100 99.2 --machine built-in --write").status, 2);
 }
@@ -50,7 +50,7 @@ TEST_F(CalibrateCommand, WritesTheNumberAlone) {
   struct stat status {};
   ASSERT_EQ(::stat(file_.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 07777U, 0640U);
-  // A temporary file would be the third name.
+  // A temporary file would be a second name in the directory.
   EXPECT_EQ(command_.names(), std::vector<std::string>{"router.toml"});
 }
 
@@ -77,7 +77,7 @@ TEST_F(CalibrateCommand, AFileThatCannotBeReplacedStays) {
   EXPECT_THAT(command_.run("calibrate X 100 99 --write --machine " + pipe).err, HasSubstr("is not a regular file"));
 }
 
-// The card keeps a hash of the scales: after the change it does not say where the machine stands.
+// The card keeps a hash of the scales, so after the change its place is not valid.
 TEST_F(CalibrateCommand, TheCardsPlaceIsVoidAfterwards) {
   Server server(command_, "--engine model --fast --world default");
   const auto on_card = [&](const std::string& arguments) {
@@ -90,7 +90,7 @@ TEST_F(CalibrateCommand, TheCardsPlaceIsVoidAfterwards) {
   const Outcome jog = on_card("jog X1");
   EXPECT_EQ(jog.status, 2) << jog.out;
   EXPECT_THAT(jog.err, HasSubstr("other scales"));
-  // Nothing moves before that is said.
+  // The command refuses before anything moves.
   const Outcome refused = on_card("home");
   EXPECT_EQ(refused.status, 2) << refused.out;
   EXPECT_THAT(refused.err, HasSubstr("`trammel zero` with all axes where they stand, then home"));

@@ -1,4 +1,4 @@
-// What `trammel calibrate` computes, says and refuses.
+// Results, messages and refusals of `trammel calibrate`.
 #include "calibrate/calibration.hpp"
 
 #include <gmock/gmock.h>
@@ -42,7 +42,7 @@ TEST(Calibration, TellsTheNewScaleByHowMuchAndTheLine) {
   EXPECT_EQ(machine::parse_machine(result.text, "m.toml").axes[1].steps_per_mm, 100);
 }
 
-// After the change the same command moves the axis as far as it says: pulses / true scale.
+// After the change the same command moves the axis by the right distance: pulses / true scale.
 TEST(Calibration, ASecondMeasurementIsRight) {
   const double true_scale = 80 * 100 / 99.2;
   const app::Calibration first = app::calibrate({"X", 100, 100 * 80 / true_scale, false}, kMachineFile, "m.toml");
@@ -77,7 +77,7 @@ TEST(Calibration, AWholeFactorNeedsForce) {
   EXPECT_EQ(refusal({"X", 100, 200, false}), "no error");
   EXPECT_EQ(refusal({"X", 100, 50, false}), "no error");
   EXPECT_EQ(refusal({"X", 100, 25.4, true}), "no error");
-  // Nothing forces what no machine file may have.
+  // --force does not allow a value that no machine file may have.
   EXPECT_THROW(app::calibrate({"X", 100, 1e-4, true}, kMachineFile, "m.toml"), machine::MachineError);
 }
 

@@ -1,5 +1,5 @@
-// docs/user/first-powered-move.md: every command of the check list is one, with the options that the page gives it, and
-// the steps that need no hand do on the simulated machine what the page says.
+// docs/user/first-powered-move.md: each command of the check list exists and has the options that the page uses. The
+// steps that need no hand do on the simulated machine what the page says.
 #include <gmock/gmock.h>
 
 #include <regex>
@@ -14,7 +14,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Lines of the page's blocks: indented by four or more, beginning with the command.
+// Command lines of the page's code blocks: indented by at least four, starting with `trammel`. Returned without that
+// word.
 std::vector<std::string> page_commands() {
   std::vector<std::string> commands;
   std::istringstream page(contents(TRAMMEL_EXAMPLES_DIR "/../docs/user/first-powered-move.md"));
@@ -45,7 +46,7 @@ TEST(CheckList, NamesCommandsAndOptionsThatThereAre) {
     EXPECT_EQ(names.count(needed), 1U) << needed;
 }
 
-// The page's line that begins so.
+// The page's command line that starts with `begin`.
 std::string line_of(const std::string& begin) {
   for (const std::string& line : page_commands())
     if (line.compare(0, begin.size(), begin) == 0) return line;
@@ -53,12 +54,13 @@ std::string line_of(const std::string& begin) {
   return {};
 }
 
-// Roles by a program that moves nothing, inputs at rest, a move, a limit, homing, a soft limit.
+// Order of the steps: roles by a program that moves nothing, inputs at rest, a move, a limit, homing, a soft limit.
 TEST(CheckList, RunsOnTheSimulatedMachine) {
   const Command command;
   Server server(command, "--engine model --fast --world default");
   const std::string machine = command.write("router.toml", contents(TRAMMEL_EXAMPLES_DIR "/first-machine.toml"));
-  // A line of the page on this card and this machine file; `instead` takes the place of how it begins.
+  // Runs a line of the page on this card and this machine file. `instead`, if not empty, replaces the start of the
+  // line.
   const auto step = [&](const std::string& begin, int status, const std::string& instead = "") {
     std::string line = line_of(begin);
     if (!instead.empty()) line = instead + line.substr(begin.size());

@@ -36,7 +36,7 @@ std::string binary() {
   return other != nullptr ? other : TRAMMEL_COMMAND;
 }
 
-// A machine file of the user's own must not change what is tested, and nothing is left behind in the user's folders.
+// The user's own machine file must not change the results, and nothing may remain in the user's folders.
 std::string environment(const Command& command) {
   return "export XDG_CONFIG_HOME='" + command.path("configuration") + "' XDG_STATE_HOME='" + command.path("state") +
          "'\n";
@@ -47,7 +47,7 @@ std::string environment(const Command& command) {
 Outcome Command::run(const std::string& arguments) const { return run_in(".", "", arguments); }
 
 Outcome Command::run_in(const std::string& folder, const std::string& before, const std::string& arguments) const {
-  // Process substitution needs bash; what the arguments lead elsewhere comes last and wins.
+  // Process substitution needs bash. Redirections in the arguments come last and override the earlier ones.
   const std::string script = environment(*this) + "cd '" + folder + "' && " + before + " '" + binary() +
                              "' </dev/null >'" + path("stdout") + "' 2>'" + path("stderr") + "' " + arguments + "\n";
   const std::string file = path("script");

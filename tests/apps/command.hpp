@@ -1,5 +1,5 @@
-// Runs the trammel command as a process and reads what it writes. Every object has a directory of its own, removed
-// with it. TRAMMEL_BINARY in the environment names another binary than the one that was built.
+// Runs the trammel command as a process and reads its output. Each object has its own directory, which is removed with
+// it. The environment variable TRAMMEL_BINARY names another binary instead of the one that was built.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 namespace trammel::test {
 
 struct Outcome {
-  int status = -1;  // of exit; -1: killed by a signal
+  int status = -1;  // exit status; -1: killed by a signal
   std::string out;
   std::string err;
 };
 
-// One row of --steps. `cycle` counts clocks of the card.
+// A row of --steps. `cycle` counts clocks of the card.
 struct Step {
   std::uint64_t cycle = 0;
   unsigned axis = 0;
@@ -33,22 +33,23 @@ class Command {
   Command(const Command&) = delete;
   Command& operator=(const Command&) = delete;
 
-  // Arguments as in a shell. Standard input is empty and standard output is a file, unless they say otherwise.
+  // Runs the command with arguments as in a shell. Standard input is empty and standard output is a file, unless the
+  // arguments redirect them.
   Outcome run(const std::string& arguments) const;
-  // In a folder, with what comes before the command in a shell's line.
+  // The same in `folder`; `before` is shell text in front of the command.
   Outcome run_in(const std::string& folder, const std::string& before, const std::string& arguments) const;
-  // A file's place in the directory.
+  // Path of a file in the directory.
   std::string path(const std::string& name) const;
-  // Names in the directory but for what the commands printed, in order.
+  // Names in the directory in order, without those of the files that captured the command's output.
   std::vector<std::string> names() const;
-  // Writes a file into the directory and gives its place.
+  // Writes a file into the directory and returns its path.
   std::string write(const std::string& name, const std::string& text) const;
 
  private:
   std::filesystem::path directory_;
 };
 
-// A terminal with a test at its keys.
+// A terminal whose keys the test types.
 class PseudoTerminal {
  public:
   PseudoTerminal();
@@ -58,7 +59,7 @@ class PseudoTerminal {
 
   const std::string& name() const { return name_; }
   void type(const std::string& keys) const;
-  // All that was written to it so far.
+  // All that was written to the terminal so far.
   const std::string& shown();
 
  private:
@@ -67,42 +68,42 @@ class PseudoTerminal {
   std::string shown_;
 };
 
-// The command while it runs.
+// The command as a process that runs in the background.
 class Running {
  public:
-  // Arguments as in a shell; standard error goes to the file `err`, standard output to `out` where one is named.
+  // Arguments as in a shell. Standard error goes to the file `err`; standard output goes to `out` unless that is empty.
   Running(const Command& command, const std::string& arguments, const std::string& err, const std::string& out = "");
-  // At a terminal, which is its standard input and output.
+  // Runs on a terminal, which is its standard input and output.
   Running(const Command& command, const std::string& arguments, const std::string& err, const PseudoTerminal& terminal);
-  // Ends it, if it still runs.
+  // Ends the process if it still runs.
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
   void signal(int number) const;
-  // What waitpid() tells; none when it still runs after 30 s.
+  // Status of waitpid(); nothing if the process still runs after 30 s.
   std::optional<int> wait();
 
  private:
-  // A line of the shell.
+  // Runs a shell line.
   explicit Running(const std::string& line);
 
   int process_ = -1;
 };
 
-// Waits until it holds, 30 s at most; whether it does.
+// Waits until `condition` holds, at most 30 s. Returns whether it holds.
 bool eventually(const std::function<bool()>& condition);
 
-// The whole file; empty where there is none.
+// Contents of a file; empty if it does not exist.
 std::string contents(const std::string& file);
 
-// The JSON of a file; a discarded value where it is none.
+// JSON of a file; a discarded value if it is not valid.
 nlohmann::json read_json(const std::string& file);
 
 // The rows of --steps. Reports a failure for a wrong header, a malformed row, or cycles out of order.
 std::vector<Step> read_steps(const std::string& file);
 
-// Lines of text, counted by their ends.
+// Number of line ends in a text.
 std::size_t count_lines(const std::string& text);
 
 }  // namespace trammel::test

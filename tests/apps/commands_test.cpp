@@ -1,4 +1,4 @@
-// The other subcommands, and the files that only people look at.
+// The other subcommands, and the output files for people.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,8 @@
 namespace trammel::test {
 namespace {
 
-// A line of the paper's table, pulses, and its largest distance computed apart from this project with an exact phase.
+// A line of the paper's table, in pulses, and its largest distance, which was computed independently of this project
+// with an exact phase.
 struct PaperLine {
   std::array<int, 2> from;
   std::array<int, 2> to;
@@ -40,7 +41,7 @@ TEST(Line, EightLinesOfThePaper) {
   }
 }
 
-// X of the default machine: 80 pulses/mm and 1000 mm/s^2.
+// X of the default machine has 80 pulses/mm and 1000 mm/s^2.
 TEST(Line, RampsByTheMachinesLimits) {
   const Command command;
   const std::string files = " --json " + command.path("out.json") + " --steps " + command.path("steps.csv");
@@ -53,7 +54,7 @@ TEST(Line, RampsByTheMachinesLimits) {
     return static_cast<double>(steps[to].cycle - steps[from].cycle);
   };
   EXPECT_NEAR(clocks(999, 1000), 100, 1);
-  // From rest to pulse n in sqrt(2 n / 80,000) s.
+  // From rest, pulse n comes after sqrt(2 n / 80,000) s.
   EXPECT_NEAR(clocks(49, 449), 1e6 * (std::sqrt(450 / 40'000.) - std::sqrt(50 / 40'000.)), 1000);
   EXPECT_NEAR(clocks(1550, 1950), clocks(49, 449), 1000);
   ASSERT_EQ(command.run(line + files + " --no-ramp").status, 0);
@@ -132,7 +133,8 @@ TEST(Run, TraceIsWritten) {
   EXPECT_GT(std::filesystem::file_size(command.path("x.fst")), 1000U);
 }
 
-// Checks tags: each closed by its own name, in order, and one element around all. Attributes hold no '<' or '>'.
+// Checks the tags: each is closed by its own name, in order, and one element contains all. Attributes hold no '<' or
+// '>'.
 testing::AssertionResult is_well_formed(const std::string& text) {
   std::vector<std::string> open;
   int roots = 0;
@@ -165,7 +167,7 @@ TEST(Run, PictureOfALongProgramIsThinned) {
         "G1 X" + std::to_string(0.01 * i * std::cos(angle)) + " Y" + std::to_string(0.01 * i * std::sin(angle)) + "\n";
   }
   const Command command;
-  // The name holds what XML reserves.
+  // The name contains characters that XML reserves.
   const Outcome outcome = command.run("run '" + command.write("a<b>&c.ngc", program) +
                                       "' --engine model --clock 1000000 --plot " + command.path("out.svg"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;

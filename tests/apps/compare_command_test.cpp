@@ -1,5 +1,5 @@
-// trammel compare from outside: figures of one line that can be worked out by hand, and random lines that do not depend
-// on the number of threads.
+// The command `trammel compare`: figures of one line that were calculated by hand, and random lines whose figures do
+// not depend on the number of threads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,14 +27,14 @@ TEST(Compare, OneLine) {
   const Command command;
   const auto methods = by_name(compare(command, "--line 0,0,7,5"));
   EXPECT_EQ(methods.size(), 9U);
-  // One pulse a step, or both axes at once as long as the shorter one lasts.
+  // One pulse per step; or both axes in one step, for as many steps as the shorter axis has pulses.
   EXPECT_EQ(methods.at("steer")["steps"], 12);
   EXPECT_EQ(methods.at("min-deviation-8")["steps"], 7);
   for (const auto& [name, method] : methods) EXPECT_EQ(method["pulses"], 12) << name;
-  // The host of the one-shot line computes once.
+  // For the one-shot line the host computes once.
   EXPECT_EQ(methods.at("one-shot")["host_operations"], 1);
   EXPECT_EQ(methods.at("steer")["host_operations"], 12);
-  // Distances are |5x - 7y| / sqrt(74): 6 at the farthest corner of the staircase, 3 at best.
+  // Distances are |5x - 7y| / sqrt(74). The numerator is 6 at the farthest corner of the staircase, and 3 at best.
   const double length = std::sqrt(74.0);
   EXPECT_NEAR(methods.at("steer")["distance"]["perpendicular"]["largest"], 6 / length, 1e-9);
   EXPECT_NEAR(methods.at("min-deviation-8")["distance"]["perpendicular"]["largest"], 3 / length, 1e-9);
@@ -47,7 +47,7 @@ TEST(Compare, RandomLinesDoNotDependOnTheThreads) {
   EXPECT_EQ(one, two);
   EXPECT_NE(one, compare(command, "--random 3000 --seed 8 --threads 2"));
   const auto methods = by_name(one);
-  // What each method is proved to keep.
+  // The bounds that are proved for each method.
   EXPECT_LT(methods.at("steer")["distance"]["perpendicular"]["largest"], 1.0);
   EXPECT_LE(methods.at("min-deviation-8")["distance"]["perpendicular"]["largest"], 0.5);
   EXPECT_LE(methods.at("one-shot")["distance"]["perpendicular"]["largest"], std::sqrt(0.5) + 1e-6);

@@ -1,5 +1,5 @@
-// `trammel run` beside a link that is cut in mid program, closed or silent: the run ends and says why, the card stops
-// on the path, and --resume makes the undisturbed path of it.
+// `trammel run` on a link that is cut in mid program, closed or silent: the run ends and tells why, the card stops on
+// the path, and --resume completes the undisturbed path.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -19,11 +19,11 @@ class CutLink : public ResumedRun {
  protected:
   CutLink() {
     watchdog_ = "1";
-    // The resume file is named after the card.
+    // The resume file is named after the card's URL, which is that of the cable.
     card_ = "'" + cable_.url() + "?token=secret'";
   }
 
-  // The next run, its link cut after a while; what it said.
+  // Starts a run and cuts its link after a while. Returns the run's standard error.
   std::string cut(State way, int milliseconds, const std::string& options, bool resumed) {
     Running client = start(options);
     let_move(milliseconds, resumed);
@@ -37,14 +37,14 @@ class CutLink : public ResumedRun {
     return said;
   }
 
-  // So often, TRAMMEL_LONG: 100 times.
+  // Cuts the link 5 times; with TRAMMEL_LONG, 100 times.
   void expect_undisturbed_path(State way, unsigned seed) {
     const int cuts = std::getenv("TRAMMEL_LONG") != nullptr ? 100 : 5;
     if (cuts > 5) write_long_program();
     const std::string wanted = undisturbed();
     std::mt19937 random(seed);
     for (int i = 0; i < cuts; ++i) {
-      // An override changes no step, and leaves time for all of them.
+      // An override of 10 percent changes no step, and makes the run long enough for all cuts.
       cut(way, static_cast<int>(random() % 400), std::string("--override 10") + (i == 0 ? "" : " --resume"), i != 0);
       ASSERT_FALSE(HasFailure()) << i;
     }
@@ -60,7 +60,8 @@ class CutLink : public ResumedRun {
 TEST_F(CutLink, ThatClosesAgainAndAgainMakesTheUndisturbedPath) { expect_undisturbed_path(State::kClosed, 1); }
 TEST_F(CutLink, ThatFallsSilentAgainAndAgainMakesTheUndisturbedPath) { expect_undisturbed_path(State::kSilent, 2); }
 
-// The watchdog's second, one beside it, three for a new connection, and some for what the end of a run asks.
+// The sum of the watchdog's second, one second beyond it, three for a new connection, and some for the last requests of
+// a run.
 TEST_F(CutLink, ThatFallsSilentEndsTheRunBehindTheWatchdogAndSaysWhatToDo) {
   using Clock = std::chrono::steady_clock;
   const auto begun = Clock::now();

@@ -1,5 +1,5 @@
-// `trammel drives`: the order that motion waits for with enable_manual, and its end; `trammel line` writes [outputs],
-// too.
+// `trammel drives`: the order for which motion waits with enable_manual, and the end of that order. `trammel line`
+// writes [outputs] too.
 #include <gtest/gtest.h>
 
 #include "command.hpp"
@@ -16,7 +16,7 @@ class Drives : public testing::Test {
   }
 
   Command command_;
-  // Of the default machine, whose drives wait for an order, or for none.
+  // The default machine with an enable output. With kManual, motion waits for an order.
   static constexpr const char* kManual = " --set outputs.enable=2 --set outputs.enable_manual=true ";
   static constexpr const char* kPlain = " --set outputs.enable=2 ";
 };

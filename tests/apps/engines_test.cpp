@@ -1,4 +1,4 @@
-// The two engines at equal clock make the same pulses, in the same cycles. (examples/part.ngc: tests/hashes.)
+// The two engines, at the same clock, make the same pulses in the same cycles. (examples/part.ngc: tests/hashes.)
 #include <gtest/gtest.h>
 
 #include "command.hpp"

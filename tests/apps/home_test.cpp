@@ -30,7 +30,7 @@ TEST_F(HomeCommand, AllAxesOfTheDefaultWorld) {
   const Outcome position = on_card("position");
   EXPECT_THAT(position.out, HasSubstr("valid, homed"));
   EXPECT_THAT(position.out, ::testing::Not(HasSubstr("not homed")));
-  // Soft limits hold now, and the carriages never met an end.
+  // The soft limits are in force now, and no carriage has run into an end.
   const Outcome jog = on_card("jog X-10");
   EXPECT_EQ(jog.status, 2) << jog.out;
   EXPECT_THAT(server_.end(), HasSubstr("world: carriages at X -98.0"));

@@ -1,5 +1,5 @@
-// A program runs into a limit switch of a served card: what run, recover, monitor and selftest say of it, and that the
-// way back is free.
+// A program runs into a limit switch of a served card. Tests the messages of run, recover, monitor and selftest, and
+// that the way back is free.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class ServedSwitches : public ::testing::Test {
   }
   std::string look(const std::string& subcommand) { return command_.run(subcommand + " --card " + server_.url()).out; }
 
-  // As the card has them.
+  // REST_TICKS_LEFT_LO of the card, as `trammel dump` prints it.
   std::string ticks_left() {
     const std::string dump = look("dump");
     const std::size_t name = dump.find("REST_TICKS_LEFT_LO");
@@ -32,7 +32,7 @@ class ServedSwitches : public ::testing::Test {
 
   const std::string kInputs = " --set inputs.x_limit_plus=3 --set inputs.feed_hold=5";
   Command command_;
-  // The switch is pressed in the middle of a move of 10 s, and stays so.
+  // The switch is pressed in the middle of a move of 10 s, and is not released.
   Server server_{command_, "--engine model --fast --input-at 3:3:1"};
 };
 
@@ -60,7 +60,7 @@ TEST_F(ServedSwitches, AProgramStopsAtItsLimit) {
   EXPECT_THAT(again.err, HasSubstr("LIMIT (axis 0 plus)"));
 }
 
-// What the message says moves it away.
+// The command that the message suggests moves the axis away.
 TEST_F(ServedSwitches, AfterARampThePlaceIsThere) {
   EXPECT_NE(run("G1 X300 F1800\n", " --set axis.x.overtravel=30").status, 0);
   EXPECT_THAT(look("recover"),
@@ -69,7 +69,7 @@ TEST_F(ServedSwitches, AfterARampThePlaceIsThere) {
   EXPECT_EQ(away.status, 0) << away.err;
 }
 
-// Both motors move X, and a step of either is one into the switch.
+// Both motors move X, so a step of either motor counts as a step into the switch.
 TEST_F(ServedSwitches, WithABeltTheWayAwayNeedsAnOverride) {
   const std::string belt = " --set kinematics.name=\"'corexy'\" --trust-position";
   EXPECT_NE(run("G1 X300 F1800\n", belt).status, 0);
@@ -111,7 +111,7 @@ class ServedDrives : public ::testing::Test {
   Server server_{command_, "--engine model"};
 };
 
-// At 1 MHz, in real time: the drives take 2.6 s.
+// At 1 MHz, in real time. The drives take 2.6 s.
 TEST_F(ServedDrives, AreShownAsTheyWaitAndAreEnabled) {
   EXPECT_EQ(drives(), "drives   disabled (of no axis; motion does not wait for drives)");
   Running client(command_,
@@ -129,7 +129,7 @@ class ServedEmergencyStop : public ::testing::Test {
     return command_.run("run " + command_.write("p.ngc", "G1 X300 F1800\n") + options + " --card " + server_.moving());
   }
   Command command_;
-  // Pressed in the middle of a move of 10 s, and released later.
+  // The button is pressed in the middle of a move of 10 s, and released later.
   Server server_{command_, "--engine model --fast --input-at 3:estop:1 --input-at 3.5:estop:0"};
 };
 

@@ -1,4 +1,4 @@
-// `trammel jog` on a served card: by a distance, and by the keys of a terminal.
+// `trammel jog` on a served card, by a distance and by the keys of a terminal.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -21,13 +21,13 @@ class JogCommand : public ::testing::Test {
   Outcome jog(const std::string& arguments) const {
     return command_.run("jog " + arguments + " --card " + server_.moving());
   }
-  // Pulses of an axis, 80 a mm.
+  // Position of an axis in pulses, 80 per mm.
   int axis(int number) const {
     const std::string out = command_.run("monitor --looks 1 --card " + server_.url()).out;
     const std::string name = "axis " + std::to_string(number) + "   pulse ";
     return out.find(name) == std::string::npos ? -1'000'000 : std::stoi(out.substr(out.find(name) + name.size()));
   }
-  // Longer than a slow axis takes for a pulse.
+  // The wait is longer than one pulse of a slow axis takes.
   bool moves() const {
     const int before = axis(0);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));

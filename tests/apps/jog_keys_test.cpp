@@ -1,4 +1,4 @@
-// Keys of a terminal, and how long one counts as held.
+// Keys of a terminal, and how long a key counts as held.
 #include "jog/jog_keys.hpp"
 
 #include <gtest/gtest.h>

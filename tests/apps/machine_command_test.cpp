@@ -1,4 +1,5 @@
-// `trammel machine --check`: the ways that stops take, and which axis keeps limit switches from a ramp.
+// `trammel machine --check`: the distances that stops take, and the axis that prevents limit switches from using a
+// ramp.
 #include "machine/machine_command.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +19,8 @@ machine::Machine machine_of(const std::string& inputs, const std::string& x, con
       "[card]\nclock_hz = 64e6\n[axis.x]\n" + axis + x + "[axis.a]\n" + axis + a + "[inputs]\n" + inputs, "m.toml");
 }
 
-// v = 100, T = 100 / 500 * 2 = 0.4 s: a ramp of 20 mm. A filter of 2 ms and a scan of 64 clocks: 0.2001 mm.
+// v = 100 mm/s and T = 2 * 100 / 500 = 0.4 s give a ramp of 20 mm. A filter of 2 ms and a scan of 64 clocks give 0.2001
+// mm.
 TEST(MachineCheck, TellsEachWay) {
   const auto machine =
       machine_of("x_limit_plus = 0\nfilter = 2\n", "overtravel = 25\nmin = 0\nmax = 300\n", "endless = true\n");

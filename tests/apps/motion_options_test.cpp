@@ -1,5 +1,5 @@
-// What an operator does to a run: overrides, holds, a slow bus, a start in the middle. The path stays the same, step by
-// step; only times differ.
+// Actions of an operator during a run: overrides, holds, a slow bus, a start in the middle. The path stays the same,
+// step by step; only the times differ.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,10 +16,10 @@
 namespace trammel::test {
 namespace {
 
-// What one run made.
+// Output of one run.
 struct Made {
   nlohmann::json json;
-  std::string path;  // the file of --path-steps
+  std::string path;  // contents of the file of --path-steps
   std::vector<Step> pins;
 };
 
@@ -36,13 +36,13 @@ class Operator : public testing::Test {
     EXPECT_EQ(outcome.status, 0) << options << ": " << outcome.err;
     return {read_json(command_.path("j")), contents(command_.path("p")), read_steps(command_.path("s"))};
   }
-  // The directions of each axis's pulses, in order: the pins without their times.
+  // The directions of each axis's pulses, in order, without their times.
   static std::map<unsigned, std::string> order(const std::vector<Step>& pins) {
     std::map<unsigned, std::string> result;
     for (const Step& step : pins) result[step.axis] += step.direction > 0 ? '+' : '-';
     return result;
   }
-  // The path steps with their paths counted, instead of the commands' numbers.
+  // The path steps with consecutive numbers of their paths instead of the commands' numbers.
   static std::vector<std::string> paths_in_order(const std::string& path) {
     std::vector<std::string> result;
     std::istringstream rows(path);
@@ -69,7 +69,7 @@ class Operator : public testing::Test {
   Command command_;
 };
 
-// Ten moments in the run, in order, far enough apart for a hold each.
+// Ten times in the run, in order, far enough apart for one hold each.
 std::vector<double> ten_moments(unsigned seed, double seconds) {
   std::mt19937_64 random(seed);
   std::vector<double> result;
@@ -114,7 +114,7 @@ TEST_F(Operator, TheSummaryCountsUnderRunsAndTheirTime) {
       text, testing::ContainsRegex(fmt::format("under-runs: {}, [1-9][0-9]*[.][0-9]+ s longer than planned\n", count)));
 }
 
-// The list's number tells paths apart that end on the same point with as many steps.
+// The identity distinguishes paths that have the same end and the same number of steps.
 TEST_F(Operator, AnotherPathHasAnotherIdentity) {
   const Made one = run(command_.write("a.ngc", "G1 X3 Y1 F900\nX0 Y0\n"), "");
   const Made other = run(command_.write("b.ngc", "G1 X3 F900\nX0\nY1\nY0\n"), "");
@@ -150,7 +150,7 @@ TEST_F(Operator, EventsComeAtTheirClockOnBothEngines) {
   }
 }
 
-// 20 mm/s on a machine whose slew takes 2 * 150 / 1000 s from full speed: the ramp goes 3 mm on, there and back.
+// 20 mm/s, on a machine whose slew takes 2 * 150 / 1000 s from full speed: stopping and starting take 3 mm each.
 TEST_F(Operator, AHoldIsARampOnThePathAndItsTimeCountsFromTheRequest) {
   const std::string program = command_.write("a.ngc", "G1 X20 F1200\n");
   const Made plain = run(program, "");
@@ -181,7 +181,7 @@ TEST_F(Operator, FeedScaleIsAFactorOnEveryFeed) {
 }
 
 TEST_F(Operator, FromALineOnModesAndPositionAreRestored) {
-  // Inches, relative, plane ZX and a feed come from above line 6.
+  // Inches, relative coordinates, plane ZX and a feed are set above line 6.
   const std::string program =
       command_.write("a.ngc", "G20 G1 X1 Y0.5 F40\nG91\nG18\nZ0.25\nF30\nX0.2 Z0.1\nG2 X0.1 Z0.1 K0.1\nM2\n");
   const Made whole = run(program, "");
@@ -196,7 +196,7 @@ TEST_F(Operator, FromALineOnModesAndPositionAreRestored) {
   }
 }
 
-// Each path's steps: tick, axis and direction.
+// Steps of one path: tick, axis and direction.
 using PathSteps = std::vector<std::array<long, 3>>;
 
 std::vector<PathSteps> paths_of(const std::string& text) {
@@ -230,7 +230,8 @@ std::string wandering_program(std::uint64_t seed, unsigned lines) {
   return text + "M2\n";
 }
 
-// All of the program is planned, and what comes before the line is left out: each path has its ticks of the whole run.
+// The whole program is planned, and the commands before the line are left out. Each path keeps its ticks of the whole
+// run.
 TEST_F(Operator, FromALineOnThePathsAreThoseOfTheWholeRun) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const std::string program = command_.write("a.ngc", wandering_program(seed, 30));
@@ -246,7 +247,7 @@ TEST_F(Operator, SingleBlockStopsBehindEachLine) {
   const std::string program = command_.write("a.ngc", kProgram);
   const Made plain = run(program, "");
   const Made single = run(program, "--single-block");
-  // Stops take feed pieces of their own, so the numbers of the paths' commands differ.
+  // Stops add feed pieces, so the numbers of the paths' commands differ.
   EXPECT_EQ(paths_in_order(plain.path), paths_in_order(single.path));
   EXPECT_EQ(plain.json["final_position"], single.json["final_position"]);
   EXPECT_TRUE(order(plain.pins) == order(single.pins));
@@ -277,8 +278,8 @@ TEST_F(Operator, CheckTellsTheTimeOfTheRunAndRunsNothing) {
   EXPECT_NE(bad.err.find("b.ngc:2: "), std::string::npos) << bad.err;
 }
 
-// 1,000 mm/s^2 of the default machine: at 50,000 mm/s^3 the acceleration rises in 0.02 s, which a lone move of an
-// S-curve takes longer than a trapezoid.
+// The default machine has 1,000 mm/s^2. At 50,000 mm/s^3 the acceleration rises for 0.02 s, and a single move on an
+// S-curve takes longer by this time than on a trapezoid.
 TEST_F(Operator, TheProfileIsNamed) {
   const std::string program = command_.write("a.ngc", "G1 X20 F1200\n");
   std::string jerks;
@@ -312,7 +313,7 @@ TEST_F(Operator, TheProfileIsNamed) {
 
 TEST_F(Operator, SCurvesNeedTheJerkOfEachAxisThatMoves) {
   const std::string s_curve = " --check --profile s-curve --set axis.x.max_jerk=50000";
-  // Among them half a circle that ends where its Y began, and a full one.
+  // Two of them are a half circle that returns to its start's Y, and a full circle.
   const std::map<std::string, std::string> wrong{
       {"G1 X1 F600\nX2 Y1\n", "a.ngc:2: axis Y moves"}, {"G1 X1 F600\nG2 X3 I1\n", "a.ngc:2: axis Y moves"},
       {"G2 I1 F600\n", "a.ngc:1: axis Y moves"},        {"G18 G2 X1 Z1 I1 F600\n", "a.ngc:1: axis Z moves"},
@@ -339,7 +340,7 @@ TEST_F(Operator, AJerkThatIsNotPerCubicSecondIsToldOf) {
   EXPECT_EQ(command_.run(run + "1000").err, "");
 }
 
-// The same run, read once; standard input needs no copy.
+// The program is read once and runs in the same way. Standard input needs no copy.
 TEST_F(Operator, StreamRunsWhatIsReadAndEndsAtRestWhereItIsWrong) {
   const Made whole = run(command_.write("a.ngc", kProgram), "");
   const Made streamed = run("- --stream <" + command_.path("a.ngc"), "");

@@ -1,5 +1,5 @@
-// The programs of examples/other-hosts on served cards: the same programs by another URL. There they check where the
-// axes end; the pulses are checked on cards in their own process.
+// The programs of examples/other-hosts on served cards, by another URL. On these cards they check the axes' end
+// positions only; the pulses are checked on cards in their own process.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

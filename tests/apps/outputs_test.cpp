@@ -1,4 +1,4 @@
-// Output files are complete or absent, whatever they are and however the command ends.
+// Output files are complete or absent, for every kind of file and every end of the command.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -14,12 +14,12 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// A short program and one that takes long; both as files of the command's directory.
+// A short program and one that takes long, as files in the command's directory.
 class OutputFiles : public testing::Test {
  protected:
   std::string at(const std::string& name) const { return command_.path(name); }
   Outcome run(const std::string& arguments) const { return command_.run("run " + short_ + " " + arguments); }
-  // The lists as they are when nothing is special.
+  // The list of steps that an undisturbed run writes.
   std::string steps() const {
     EXPECT_EQ(run("--steps " + at("plain")).status, 0);
     std::string text = contents(at("plain"));
@@ -158,7 +158,7 @@ TEST_F(OutputFiles, FullDiskIsAnErrorAndLeavesNothing) {
     EXPECT_EQ(command_.names(), before) << option;
     EXPECT_EQ(contents(at("old.json")), "old") << option;
   }
-  // A file that may not grow: what the disk takes no more of.
+  // The file's size is limited, as on a full disk.
   for (const std::string option : {"--plot", "--trace"}) {
     const Outcome limited = command_.run_in(".", "ulimit -f 1;", "run " + short_ + " " + option + " " + at("old.json"));
     EXPECT_EQ(limited.status, 1) << limited.err;
@@ -168,7 +168,7 @@ TEST_F(OutputFiles, FullDiskIsAnErrorAndLeavesNothing) {
   }
 }
 
-// In mid run, when the files that are being written lie there.
+// The signal comes during the run, when the temporary files exist.
 TEST_F(OutputFiles, SignalLeavesWhatWasThere) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     command_.write("steps.csv", "old");
@@ -187,12 +187,12 @@ TEST_F(OutputFiles, SignalLeavesWhatWasThere) {
   }
 }
 
-// While the simulated card moves it is stopped first, so that its place can be told.
+// If the simulated card moves, it is stopped first, so that its position can be reported.
 TEST_F(OutputFiles, SignalTellsWhereTheSimulatedCardStands) {
   const std::string fast = command_.write("fast.ngc", "G1 X1000 F6000\n");
   for (const std::string engine : {"rtl", "model"}) {
     const Names before = command_.names();
-    // 80,000 steps a second: what is written of them says that it moves.
+    // At 80,000 steps/s a list that is not empty tells that the card moves.
     Running running(command_,
                     "run " + fast + " --set axis.x.steps_per_mm=800 --card sim: --clock 1000000 --engine " + engine +
                         " --steps " + at("steps.csv"),
@@ -221,7 +221,7 @@ TEST_F(OutputFiles, ReaderThatGoesAwayLeavesNothing) {
   EXPECT_EQ(command_.names(), before);
 }
 
-// The second of two names cannot be taken: the first file must not be the new one either.
+// One of the files cannot be put in place: then the old a.json must not be replaced either.
 TEST_F(OutputFiles, NoOldFileBesideANewOne) {
   command_.write("a.json", "old");
   ASSERT_EQ(::mkfifo(at("fifo").c_str(), 0600), 0);
@@ -229,7 +229,7 @@ TEST_F(OutputFiles, NoOldFileBesideANewOne) {
                   "run " + short_ + " --json " + at("a.json") + " --path-steps " + at("b.csv") + " --plot " +
                       at("c.svg") + " --steps " + at("fifo"),
                   "stderr");
-  // The command has looked at the names and now waits for a reader of the FIFO.
+  // The command has checked the names and now waits for a reader of the FIFO.
   ASSERT_TRUE(eventually([&] { return command_.names().size() >= 5; }));
   std::filesystem::create_directory(at("c.svg"));
   const Outcome reader = command_.run_in(".", "cat '" + at("fifo") + "' >'" + at("read") + "'; true", "--version");

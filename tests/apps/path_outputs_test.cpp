@@ -1,4 +1,4 @@
-// Outputs that a program switches and inputs that the run scripts, at the pins of both engines.
+// Outputs that a program switches and inputs that the run's options set, at the pins of both engines.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ std::vector<Change> read_changes(const std::string& file) {
 
 class PathIo : public testing::Test {
  protected:
-  // On both engines, which must make the same of it.
+  // Runs on both engines, whose results must be equal.
   nlohmann::json run(const std::string& program, const std::string& options) {
     for (const std::string engine : {"model", "rtl"}) {
       const std::string file = command_.path(engine);
@@ -53,7 +53,7 @@ class PathIo : public testing::Test {
     steps_ = read_steps(command_.path("rtl.s"));
     return read_json(command_.path("j"));
   }
-  // Pulses of X when an output changes, and how far it is on to the next pulse (0 .. 1).
+  // Position of X in pulses when an output changes, with the fraction (0 .. 1) of the time to the next pulse.
   double place_of(const Change& change) const {
     double pulses = 0;
     std::uint64_t before = 0;
@@ -76,7 +76,7 @@ class PathIo : public testing::Test {
 
 constexpr char kOutputs[] = "--set outputs.m3=0 --set 'outputs.m4=[0,1]' --set outputs.m8=3";
 
-// A path's last tick is half a pulse behind its last step.
+// The last tick of a path comes half a pulse after its last step.
 TEST_F(PathIo, OutputsChangeAtTheirPlaceOnThePathWithoutAStop) {
   const std::string words =
       command_.write("a.ngc", "F1200\nS1000 M3\nG1 X10\nM8\nG1 X20\nX30 M4\nM5\nX40\nM9\nX50 M3\nM2\n");
@@ -89,7 +89,7 @@ TEST_F(PathIo, OutputsChangeAtTheirPlaceOnThePathWithoutAStop) {
     int level;
     double mm;
   };
-  // M4 sets 0, which is set; M5 clears both.
+  // M4 sets output 0, which is set already. M5 clears both.
   const std::vector<Expected> expected{{0, 1, 0},  {3, 1, 10}, {1, 1, 20}, {0, 0, 30},
                                        {1, 0, 30}, {0, 1, 40}, {3, 0, 40}, {0, 0, 50}};
   ASSERT_EQ(changes_.size(), expected.size());
@@ -102,7 +102,8 @@ TEST_F(PathIo, OutputsChangeAtTheirPlaceOnThePathWithoutAStop) {
   }
   EXPECT_LT(changes_.front().cycle, steps_.front().cycle) << "before the first pulse";
   EXPECT_GT(changes_.back().cycle, steps_.back().cycle) << "off behind the last one";
-  // The pulses are those of the program without words, all later by what is sent more before the first.
+  // The pulses are those of the program without output words. All are later by the same time, because more is sent
+  // before the first.
   ASSERT_EQ(steps_.size(), steps.size());
   const std::uint64_t later = steps_.front().cycle - steps.front().cycle;
   EXPECT_LT(later, 200U);
@@ -173,7 +174,7 @@ TEST_F(PathIo, InputsAreScripted) {
   }
 }
 
-// Rapids of 150 mm/s, feeds of 20 mm/s; seconds at the middles of the moves.
+// Rapids have 150 mm/s, feeds 20 mm/s.
 TEST_F(PathIo, RapidsHaveAnOverrideOfTheirOwn) {
   const std::string program = command_.write("a.ngc", "G0 X60\nG1 X50 F1200\n");
   // Speed of X, mm/s, over the middle half of the pulses from `first` to `last`.

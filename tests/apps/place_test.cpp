@@ -1,4 +1,4 @@
-// The machine's place on a served card: where commands begin, what they refuse, and what sets it anew.
+// The machine's place on a served card: the start of commands, what they refuse, and what sets the place.
 #include <gmock/gmock.h>
 
 #include "command.hpp"
@@ -40,7 +40,7 @@ class PlaceOfACard : public ::testing::Test {
     EXPECT_THAT(outcome.err, HasSubstr(message));
     EXPECT_EQ(outcome.out, "");
   }
-  // X moves, and is cut off at once.
+  // Moves X and aborts the motion.
   void cut_off() {
     transport::Connection connection(transport::parse_card_url(server_.url() + "?token=secret"));
     driver::Card card = driver::Card::open(connection.bus());
@@ -208,7 +208,7 @@ TEST_F(PlaceOfACard, ALineHeedsSoftLimitsOfHomedAxes) {
   EXPECT_EQ(scales.status, 0);
 }
 
-// Like run and jog: what the card is told stays its last guard.
+// As run and jog do: the soft limits in the card remain its last guard.
 TEST_F(PlaceOfACard, ALineTellsTheCardItsSoftLimits) {
   const auto limits = [&] {
     const std::string dump = command_.run("dump --card " + server_.url()).out;

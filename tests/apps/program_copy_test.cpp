@@ -1,4 +1,5 @@
-// Programs that can be read only once are copied before they run: how much at most, and what is left of the copy.
+// Programs that can be read only once are copied before they run. Tests the limit of the copy's size, and that no copy
+// remains.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -10,7 +11,7 @@
 namespace trammel::test {
 namespace {
 
-// A copy that goes on for ever fails at 64 MiB instead of filling the disk.
+// A copy without end fails at 64 MiB instead of filling the disk.
 Outcome run_program(const Command& command, const std::string& arguments) {
   return command.run_in(".", "ulimit -f 65536; timeout 60", "run " + arguments);
 }
@@ -43,7 +44,7 @@ TEST(ProgramCopy, LimitIsOfPipesAloneAndCanBeRaised) {
   EXPECT_EQ(run_program(command, "--check --pipe-limit 1 " + file).status, 0);
 }
 
-// The reader's limit of a line holds while the program is copied.
+// The reader's limit for the length of a line also holds during the copy.
 TEST(ProgramCopy, LineWithoutEndIsRefused) {
   const Command command;
   expect_program_refused(run_program(command, "/dev/zero"), "/dev/zero:1: a line of more than 65535 bytes");
@@ -53,7 +54,7 @@ TEST(ProgramCopy, LineWithoutEndIsRefused) {
                          "/dev/zero:1: must be the number of a parameter");
 }
 
-// Killed in the middle of the copy: more than a pipe holds has been read of the FIFO by then.
+// The command is killed during the copy. By then it has read more from the FIFO than a pipe holds.
 TEST(ProgramCopy, KillLeavesNothing) {
   const Command command;
   std::filesystem::create_directory(command.path("temporary"));

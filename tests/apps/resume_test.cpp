@@ -1,5 +1,5 @@
-// `trammel run --resume` and `--from-line` on a served card: hosts that are killed or stopped, and the run that goes
-// on.
+// `trammel run --resume` and `--from-line` on a served card: hosts that are killed or stopped, and the run that
+// continues.
 #include <gmock/gmock.h>
 
 #include <csignal>
@@ -22,7 +22,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// TRAMMEL_LONG: 200 times.
+// With TRAMMEL_LONG, 200 kills.
 TEST_F(ResumedRun, OfAHostThatIsKilledAgainAndAgainMakesTheUndisturbedPath) {
   const std::string whole = undisturbed();
   const int kills = std::getenv("TRAMMEL_LONG") != nullptr ? 200 : 10;
@@ -30,7 +30,7 @@ TEST_F(ResumedRun, OfAHostThatIsKilledAgainAndAgainMakesTheUndisturbedPath) {
   if (kills > 10) write_long_program();
   const std::string wanted = kills > 10 ? undisturbed() : whole;
   for (int i = 0; i < kills; ++i) {
-    // An override changes no step, and leaves time for all of them.
+    // An override of 10 percent changes no step, and makes the run long enough for all kills.
     Running client = start(std::string("--override 10") + (i == 0 ? "" : " --resume"));
     end(client, SIGKILL, static_cast<int>(random() % 400), i != 0);
     ASSERT_FALSE(HasFailure()) << i;
@@ -54,7 +54,7 @@ TEST_F(ResumedRun, OfAHostThatWasStoppedInOrder) {
   EXPECT_EQ(path_of(server_.end()), undisturbed());
 }
 
-// The run's own hold stands until its first piece that moves has begun: from there on it goes up a ramp.
+// The run keeps its own hold until its first piece that moves has begun, and then releases it on a ramp.
 TEST_F(ResumedRun, AConnectionMadeAnewInTheSilenceDoesNotTakeTheHoldBack) {
   command_.write("p.ngc", "G1 X900 F9000\n");
   const std::string file = "--resume-file " + command_.path("own.json");
@@ -68,7 +68,7 @@ TEST_F(ResumedRun, AConnectionMadeAnewInTheSilenceDoesNotTakeTheHoldBack) {
                   "run " + command_.path("p.ngc") + " --resume " + file + " --set motion.watchdog=40 --card '" +
                       cable.url() + "?token=secret'",
                   "resumed.err");
-  // As many ticks as the run before had taken, one a clock: some seconds.
+  // The silent piece repeats the ticks of the interrupted run at one tick per clock, which takes some seconds.
   const auto in_silence = [&] { return card.read_status().path_active && card.read_snapshot().feed_begun == 1; };
   ASSERT_TRUE(eventually(in_silence)) << contents(command_.path("resumed.err"));
   const std::int32_t stands = card.read_snapshot().position[0];
@@ -159,7 +159,7 @@ TEST_F(ResumedRun, KeepsItsFileWhereItIsToldAndOverwritesNoOther) {
   EXPECT_FALSE(std::filesystem::exists(command_.path("state")));
 }
 
-// From where the interrupted run of the program began, wherever the machine stands.
+// The coordinates are those of the interrupted run's start, independent of the machine's present place.
 TEST_F(ResumedRun, FromALineOnWithTheSamePath) {
   const Outcome whole = run("--override 100");
   ASSERT_EQ(whole.status, 0) << whole.err;

@@ -1,4 +1,4 @@
-// `trammel run` on a served card, interrupted and gone on with.
+// `trammel run` on a served card, interrupted and resumed.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ namespace trammel::test {
 
 class ResumedRun : public ::testing::Test {
  protected:
-  // Lines and arcs, some 3 s of motion.
+  // Lines and arcs, about 3 s of motion.
   static std::string program() {
     std::string text = "F3000\n";
     for (int i = 1; i <= 60; ++i) {
@@ -36,12 +36,13 @@ class ResumedRun : public ::testing::Test {
     ++started_;
     return Running(command_, line(options), said_in());
   }
-  // By each client of its own: one that has just begun has not emptied a file of before yet.
+  // Each client has its own file: a client that has just started may not have emptied an earlier file yet.
   std::string said_in() const { return "client" + std::to_string(started_) + ".err"; }
   bool shows(const std::string& text) const {
     return command_.run("monitor --looks 1 --card " + server_.url()).out.find(text) != std::string::npos;
   }
-  // Until the client has moved the card for a while; a run that goes on once it has said so.
+  // Waits until the client has moved the card for a while. For a resumed run this time counts from its message about
+  // the line at which it begins.
   void let_move(int milliseconds, bool resumed) const {
     const auto moves = [&] {
       return resumed ? contents(command_.path(said_in())).find("the run begins at line") != std::string::npos
@@ -56,7 +57,7 @@ class ResumedRun : public ::testing::Test {
     client.wait();
     await_gone();
   }
-  // Until the server has seen one more client go.
+  // Waits until the server has seen one more client disconnect.
   void await_gone() {
     const auto gone = [&] {
       std::size_t times = 0;
@@ -76,7 +77,7 @@ class ResumedRun : public ::testing::Test {
     EXPECT_THAT(outcome.err, ::testing::HasSubstr(message));
     EXPECT_EQ(outcome.out, "");
   }
-  // Once it stands.
+  // Position after the card has come to rest.
   std::string position() const {
     std::string at;
     const auto stands = [&] {
@@ -87,7 +88,7 @@ class ResumedRun : public ::testing::Test {
     EXPECT_TRUE(eventually(stands));
     return at;
   }
-  // What a server that was never left alone says of the path.
+  // Number of steps and identity of the path on a server whose run is not interrupted.
   std::string undisturbed() const {
     const Command elsewhere;
     Server other(elsewhere, "--engine model --fast");
@@ -101,7 +102,7 @@ class ResumedRun : public ::testing::Test {
     return said.substr(steps, said.find(',', steps) - steps) + " " + said.substr(path, 24);
   }
 
-  // The program so often that it lasts for as many interruptions.
+  // Repeats the program so often that it lasts for all interruptions.
   void write_long_program() {
     std::string longer = "F3000\n";
     for (int i = 0; i < 5; ++i) longer += program().substr(0, program().size() - 3);
@@ -109,12 +110,12 @@ class ResumedRun : public ::testing::Test {
   }
 
   Command command_;
-  std::string watchdog_ = "40";  // s
+  std::string watchdog_ = "40";  // seconds
   std::string card_;             // empty: the server's URL
   Server server_{command_, "--engine model"};
   std::string program_ = command_.write("p.ngc", program());
   unsigned started_ = 0;
-  std::size_t ended_ = 0;  // clients that moved the card and have gone
+  std::size_t ended_ = 0;  // clients that moved the card and have disconnected
 };
 
 }  // namespace trammel::test

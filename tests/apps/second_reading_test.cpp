@@ -1,5 +1,5 @@
-// A second reading of what the command writes: from the --steps file alone, with geometry of its own. The tests write
-// the G-code from a table of shapes, so they know the path without reading any program.
+// A second evaluation of the command's output, from the --steps file alone and with independent geometry. The tests
+// write the G-code from a table of shapes, so they know the path without reading a program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,14 +14,14 @@ namespace trammel::test {
 namespace {
 
 constexpr std::size_t kAxes = 4;    // X Y Z E of the default machine
-constexpr double kStepsPerMm = 80;  // of each
+constexpr double kStepsPerMm = 80;  // of each axis
 constexpr double kPi = 3.14159265358979323846;
 
 using Place = std::array<double, kAxes>;         // mm
 using Pulses = std::array<std::int64_t, kAxes>;  // pulses
 
-// A move to `target`. `turn` 0: a line; +1: G3, counter-clockwise; -1: G2. An arc lies in plane G17, G18 or G19, its
-// centre `to_centre` (first and second axis of the plane, mm) from its start.
+// A move to `target`. `turn`: 0: a line; +1: G3, counter-clockwise; -1: G2. An arc lies in plane G17, G18 or G19. Its
+// centre is `to_centre` (first and second axis of the plane, mm) from its start.
 struct Shape {
   Place target{};
   int turn = 0;
@@ -44,7 +44,7 @@ Shape arc(int turn, int plane, Place target, double first, double second) {
   return shape;
 }
 
-// The plane's axes, in the order in which counter-clockwise turns the first into the second.
+// The plane's axes, in the order in which a counter-clockwise turn leads from the first to the second.
 std::array<std::size_t, 2> plane_axes(int plane) {
   if (plane == 18) return {2, 0};
   if (plane == 19) return {1, 2};
@@ -72,7 +72,7 @@ std::string gcode(const std::vector<Shape>& shapes, double feed) {
   return text + "M2\n";
 }
 
-// One shape being walked: how far a position lies off it, and whether it has been walked to its end.
+// Follows one shape: tells how far a position is off it, and whether its end was reached.
 class Walk {
  public:
   Walk(const Shape& shape, const Place& from)
@@ -100,7 +100,7 @@ class Walk {
     return is_line() || std::abs(swept_ - sweep_) < 0.1;
   }
 
-  // Pulses off the path. For a line: from the segment, its ends included; for an arc: outside the annulus.
+  // Distance from the path in pulses. For a line: to the segment, including its ends; for an arc: to the annulus.
   double distance(const Pulses& at) {
     if (is_line()) return distance_to_line(at);
     const auto [x, y] = from_centre(at);
@@ -146,9 +146,9 @@ class Walk {
   std::array<std::size_t, 2> axes_;
   int moving_ = 0;
   std::array<double, 2> centre_{};  // pulses
-  double angle_ = 0;                // where the last position lay, radians
-  double sweep_ = 0;                // the whole turn, positive
-  double swept_ = 0;                // of it, so far
+  double angle_ = 0;                // of the last position, radians
+  double sweep_ = 0;                // angle of the whole arc, positive
+  double swept_ = 0;                // angle covered so far
   double start_radius_ = 0;
   double end_radius_ = 0;
 };
@@ -158,10 +158,10 @@ struct Reading {
   Pulses counts{};
   double line = 0;  // largest distances, pulses
   double arc = 0;
-  std::size_t finished = 0;  // shapes whose ends were reached, in their order
+  std::size_t finished = 0;  // number of shapes whose ends were reached, in order
 };
 
-// Walks the steps along the shapes. Reports every rule that a step breaks.
+// Follows the steps along the shapes. Reports each rule that a step violates.
 Reading read(const std::vector<Step>& steps, const std::vector<Shape>& shapes) {
   Reading result;
   Place from{};
@@ -171,7 +171,7 @@ Reading read(const std::vector<Step>& steps, const std::vector<Shape>& shapes) {
     walks.emplace_back(shape, from);
     from = shape.target;
   }
-  // A shape shorter than a pulse makes no step.
+  // A shape shorter than a pulse makes no steps.
   const auto skip_empty = [&] {
     while (result.finished < walks.size() && walks[result.finished].done(result.end)) ++result.finished;
   };
@@ -220,7 +220,7 @@ void expect_agreement(const std::vector<Shape>& shapes, double feed, const std::
   EXPECT_EQ(reading.end, rounded(shapes.back().target));
   EXPECT_EQ(json["final_position"].get<Pulses>(), reading.end);
   EXPECT_EQ(json["steps"].get<Pulses>(), reading.counts);
-  // The tool measures before the shapers; where no pulse waits for its direction the two readings are one.
+  // The tool measures before the shapers. If no pulse waits for its direction, both results are equal.
   EXPECT_NEAR(json["max_deviation"]["line"].get<double>(), reading.line, 0.01);
   EXPECT_NEAR(json["max_deviation"]["arc"].get<double>(), reading.arc, 0.01);
   if (engine == "rtl") {
@@ -236,8 +236,8 @@ std::vector<Shape> lines() {
           line(0, 0, 0, 0), line(0, 0, -3),    line(0.0063, 0.0062), line(12.34, -0.05, 1)};
 }
 
-// From (5, 0): quarters, halves, three quarters and full turns in both directions; an end that is off the circle by
-// less than the rounding.
+// Starting at (5, 0): quarters, halves, three quarters and full turns in both directions, and an end that is off the
+// circle by less than the rounding.
 std::vector<Shape> arcs(int turn) {
   const double t = turn;
   return {line(5, 0),

@@ -1,4 +1,4 @@
-// `trammel serve --hm2` from the command line; LinuxCNC itself is in tests/linuxcnc_hm2.
+// The command line of `trammel serve --hm2`. LinuxCNC itself is tested in tests/linuxcnc_hm2.
 #include <gtest/gtest.h>
 
 #include "command.hpp"

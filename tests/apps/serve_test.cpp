@@ -1,4 +1,4 @@
-// Cards outside, from the command line: a served one, and everything that is none.
+// External cards on the command line: a served card, and URLs behind which there is no card.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -18,7 +18,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-// One line, status 2.
+// The command prints one line and has status 2.
 void expect_refused(const Command& command, const std::string& arguments, const std::string& message) {
   const Outcome outcome = command.run(arguments);
   EXPECT_EQ(outcome.status, 2) << arguments << '\n' << outcome.err;
@@ -85,13 +85,13 @@ TEST(Serve, OnAPseudoTerminal) {
   EXPECT_TRUE(has(server.end(), "path: 20 steps"));
 }
 
-// The number behind `words` in a text; -1 where it is not there.
+// The number that follows `words` in a text; -1 if the words are missing.
 int number_behind(const std::string& text, const std::string& words) {
   const std::size_t at = text.find(words);
   return at == std::string::npos ? -1 : std::stoi(text.substr(at + words.size()));
 }
 
-// Waits until axis 0 has made so many steps, however slow its client is to begin.
+// Waits until axis 0 has made `steps` steps. The client may start slowly.
 bool comes_to(const Command& command, const Server& server, int steps) {
   return eventually([&] {
     const Outcome look = command.run("monitor --looks 1 --card " + server.url());
@@ -99,8 +99,8 @@ bool comes_to(const Command& command, const Server& server, int steps) {
   });
 }
 
-// A client that is killed while the card moves, by the process; the card holds, and the next client goes on from there,
-// where it comes before the watchdog has expired.
+// A client process is killed while the card moves. The card holds. The next client continues there if it comes before
+// the watchdog expires.
 TEST(Serve, AClientIsKilled) {
   const Command command;
   Server server(command, "--engine model");
@@ -116,8 +116,8 @@ TEST(Serve, AClientIsKilled) {
   EXPECT_TRUE(has(next.err, "the rest of that motion is dropped")) << next.err;
 }
 
-// Ends a client by a signal while it moves the card, and gives back the number behind `words` in what it says then. A
-// client that is slow to begin is ended before; it is given more time then.
+// Ends a client by a signal while it moves the card. Returns the number that follows `words` in its message. If the
+// signal came before the motion, the next client gets more time.
 int stop_by(const Command& command, Server& server, const std::string& arguments, int number,
             const std::string& words) {
   for (const int milliseconds : {300, 1000, 5000}) {
@@ -138,7 +138,7 @@ int stop_by(const Command& command, Server& server, const std::string& arguments
   return 0;
 }
 
-// Ctrl-C stops the card on the path, its place is told, and the next program begins there.
+// Ctrl-C stops the card on the path, the command reports its place, and the next program begins there.
 TEST(Serve, CtrlCStopsInOrder) {
   const Command command;
   Server server(command, "--engine model");
@@ -153,7 +153,7 @@ TEST(Serve, CtrlCStopsInOrder) {
   EXPECT_FALSE(std::filesystem::exists(command.path("out.json")));
 }
 
-// A ramp that takes long is not waited for at the second one.
+// A second Ctrl-C does not wait for the end of a long ramp.
 TEST(Serve, ASecondCtrlCLeavesAtOnce) {
   const Command command;
   Server server(command, "--engine model");
@@ -170,7 +170,7 @@ TEST(Serve, ASecondCtrlCLeavesAtOnce) {
   EXPECT_TRUE(eventually([&] { return server.said("the card holds"); })) << server.errors();
 }
 
-// A program begins where the one before it ended, whoever sent that.
+// A program begins at the end of the program before it, whichever client sent that one.
 TEST(Serve, TheNextRunBeginsWhereTheMachineStands) {
   const Command command;
   Server server(command, "--engine model --fast");
@@ -199,7 +199,7 @@ TEST(Serve, TheNextRunBeginsWhereTheMachineStands) {
   EXPECT_EQ(number_behind(server.end(), "path: "), 800 + 160 + 240 + 960 + 240) << server.errors();
 }
 
-// The run goes on, and the path is that of a cable that was whole.
+// The run continues, and its path equals that over an undisturbed cable.
 TEST(Serve, ACableThatIsCutThreeTimes) {
   const Command command;
   std::string text = "F3000\n";

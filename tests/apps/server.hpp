@@ -1,4 +1,4 @@
-// `trammel serve` while it runs.
+// A running `trammel serve`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,20 +20,20 @@ class Server {
     url_ = out.substr(5, out.find('\n') - 5);
   }
 
-  // Of the card: for reading, and with the token.
+  // URL of the card; the first is for reading, the second has the token and may move the card.
   const std::string& url() const { return url_; }
   std::string moving() const { return "'" + url_ + "?token=secret'"; }
   std::string errors() const { return contents(command_.path("serve.err")); }
   bool said(const std::string& text) const { return errors().find(text) != std::string::npos; }
   void signal(int number) const { running_.signal(number); }
-  // Ends it; what it said last.
+  // Ends the server by SIGTERM. Returns its standard error.
   std::string end() {
     running_.signal(SIGTERM);
     const std::optional<int> status = running_.wait();
     EXPECT_TRUE(status && WIFEXITED(*status) && WEXITSTATUS(*status) == 0) << errors();
     return errors();
   }
-  // It ends by itself.
+  // Waits until the server ends by itself. Returns its standard error.
   std::string wait() {
     EXPECT_TRUE(running_.wait()) << errors();
     return errors();

@@ -1,6 +1,6 @@
-// Real programs from elsewhere. Each runs on both engines; by default at a lower clock than the command's 1 MHz, so
-// that each takes some ten seconds: TRAMMEL_LONG=1 in the environment runs all of them at 1 MHz (up to 306 million
-// clocks on the Verilated card). The long one, octocat, runs in tests/hashes.
+// Real programs from other sources. Each runs on both engines. By default the clock is lower than the command's 1 MHz,
+// so that each program takes about ten seconds. TRAMMEL_LONG=1 in the environment runs all of them at 1 MHz (up to 306
+// million clocks on the Verilated card). The long program, octocat, runs in tests/hashes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,14 +18,14 @@ using Pulses = std::array<std::int64_t, 4>;
 
 const std::string kFolder = TRAMMEL_SHARED_GCODE_DIR "/";
 
-// `end`: the last words of the file, rounded to pulses at 80 steps/mm. `axes`: that move together in its lines.
+// `end`: the last coordinates of the file, rounded to pulses at 80 steps/mm. `axes`: number of axes that move together.
 struct Job {
   const char* name;
   const char* clock;  // Hz
   Pulses end;
   int axes;
 };
-// In the names of the tests.
+// Prints the name in the names of the tests.
 void PrintTo(const Job& row, std::ostream* out) { *out << row.name; }
 
 class Jobs : public testing::TestWithParam<Job> {};
@@ -86,8 +86,8 @@ TEST(Gcode, OctocatOnASlowBusHasNoUnderRun) {
   EXPECT_NEAR(json["seconds"].get<double>(), json["planned_seconds"].get<double>(), 0.5);
 }
 
-// Over a line of 115,200 baud in card time, from which a machine as quick as that (500 mm/s, 20,000 mm/s^2) is starved:
-// it holds on the path and goes on. Frames over TCP, the card at 1 MHz.
+// The link has 115,200 baud in card time, too slow for a machine this fast (500 mm/s, 20,000 mm/s^2): the card holds on
+// the path and continues. Frames over TCP, the card at 1 MHz.
 void octocat_over_a_slow_line(const Command& command, const std::string& program, const std::string& engine) {
   std::string options = " --feed-scale 15 --set motion.junction_deviation=0.05";
   for (const char* axis : {"x", "y", "z", "e"}) {

@@ -1,4 +1,4 @@
-// What shells and manuals know of the command is what its help tells.
+// Shell completion and the manual agree with the command's help.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -15,7 +15,7 @@ const std::vector<std::string> kCommands = {"run",        "line",    "jog",     
                                             "completion", "man",     "position",  "zero",    "recover", "drives",
                                             "home",       "machine", "calibrate", "world",   "panel"};
 
-// The long options that the help of a subcommand names at the beginning of a line.
+// The long options in the help of a subcommand, at the start of a line.
 std::set<std::string> options_of(const Command& command, const std::string& name) {
   std::set<std::string> options;
   const std::string help = command.run("help " + name).out;
@@ -24,7 +24,7 @@ std::set<std::string> options_of(const Command& command, const std::string& name
   return options;
 }
 
-// Sources the bash script and asks what it offers after these words; the last one is what was begun.
+// Sources the bash script and returns its completions for these words; the last word is incomplete.
 std::string offered(const Command& command, const std::string& script, const std::string& words) {
   const std::string out = command.path("offered.txt");
   const std::string asks = command.write(

@@ -7,10 +7,10 @@
 namespace trammel::test {
 namespace {
 
-// Two sound programs, of which the second one has a warning; both as files of the command's directory.
+// Two valid programs, of which the second causes a warning, as files in the command's directory.
 class StandardStreams : public testing::Test {
  protected:
-  // A command that does not notice would go on for ever.
+  // The timeout ends a command that does not notice the lost stream.
   Outcome run(const std::string& arguments) const { return command_.run_in(".", "timeout 20", arguments); }
   std::string json() const { return command_.path("new.json"); }
   void expect_no_file(const std::string& arguments) const {
@@ -42,7 +42,7 @@ TEST_F(StandardStreams, ClosedOrFullOutputIsAnErrorOfEveryCommand) {
   expect_no_file("a run that counts as failed");
 }
 
-// The status is all that can be told then.
+// Without standard error, the exit status is the only report.
 TEST_F(StandardStreams, LostMessageOfAnErrorLeavesItsStatus) {
   for (const std::string& arguments :
        {"run " + command_.path("none.ngc"), "run " + good_ + " --bogus", std::string("line"),
@@ -84,7 +84,7 @@ TEST_F(StandardStreams, ClosedInputIsNoProgram) {
   EXPECT_EQ(run("run " + good_ + " --engine model <&-").status, 0) << "where nothing is read from it";
 }
 
-// An output file would else get the descriptor of a closed stream, and with it what is printed.
+// Otherwise an output file would get the descriptor of a closed stream, and the printed text with it.
 TEST_F(StandardStreams, ClosedStreamsLeaveTheFilesAlone) {
   const std::string with = "run " + good_ + " --engine model --steps ";
   ASSERT_EQ(run(with + command_.path("expected")).status, 0);

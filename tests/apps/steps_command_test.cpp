@@ -1,4 +1,4 @@
-// trammel steps as a user calls it: formats and exit reasons.
+// The command `trammel steps`: formats and exit statuses.
 #include "steps/steps_command.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What the command says to people: names, help, notes, progress, programs from pipes, cards of any number of axes.
+// Text for people: names, help, notes, progress; programs from pipes; cards of any number of axes.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -105,7 +105,7 @@ TEST(Limits, AreWrittenAsAPersonWritesThem) {
   EXPECT_EQ(command.run("info --clock 1e6").status, 0);
 }
 
-// Standard error of the tests is no terminal.
+// Standard error of the tests is not a terminal.
 TEST(Progress, HasNoEscapesInALog) {
   const Command command;
   const std::string run = "run " + command.write("a.ngc", "G1 X20 F600\n");
@@ -136,7 +136,7 @@ TEST(Progress, TerminalGetsABarAndATimeLeft) {
 
 TEST(Notes, LongRunOfTheRtlEngine) {
   const Command command;
-  const std::string program = command.write("long.ngc", "G1 X10000 F60\n");  // 10^10 clocks of 1 MHz
+  const std::string program = command.write("long.ngc", "G1 X10000 F60\n");  // 10^10 clocks at 1 MHz
   Running running(command, "run " + program, "note");
   EXPECT_TRUE(eventually([&] { return count_lines(contents(command.path("note"))) == 1; }));
   const std::string note = contents(command.path("note"));
@@ -144,7 +144,7 @@ TEST(Notes, LongRunOfTheRtlEngine) {
   EXPECT_NE(note.find("--engine model"), std::string::npos) << note;
 }
 
-// One line a cause, with the count and the place where the smallest share of the feed is reached.
+// One line per cause, with the count and the line that reaches the smallest fraction of its feed.
 TEST(Notes, FeedsThatAreNotReached) {
   const Command command;
   const Outcome reached = command.run("run --engine model " + command.write("a.ngc", "G1 X10 F600\n"));
@@ -153,10 +153,10 @@ TEST(Notes, FeedsThatAreNotReached) {
       "run --engine model " + command.write("b.ngc", "F3000\nG1 X0.5\nG1 X0.1\nG1 X50\nG1 X0.2 F90000\nG1 X30 F600\n"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(count_lines(outcome.err), 2U) << outcome.err;
-  // 0.4 mm and back at 1000 mm/s^2 reach 20 mm/s.
+  // Moves of 0.4 mm forth and back at 1000 mm/s^2 reach 20 mm/s.
   EXPECT_NE(outcome.err.find("2 moves do not reach the feed: too short"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("b.ngc:3, 1200 of 3000 mm/min"), std::string::npos) << outcome.err;
-  // 150 mm/s of the default machine.
+  // The default machine's limit is 150 mm/s.
   EXPECT_NE(outcome.err.find("1 move does not reach the feed: beyond the max_velocity"), std::string::npos);
   EXPECT_NE(outcome.err.find("b.ngc:5, 9000 of 90000 mm/min"), std::string::npos) << outcome.err;
 }
@@ -187,7 +187,7 @@ TEST(Notes, BlendsAndCornersThatAreKept) {
     EXPECT_NE(outcome.out.find("corners not rounded by G64 P: 1 (reversals)\n"), std::string::npos) << outcome.out;
     EXPECT_NE(contents(command.path("a.json")).find("\"blends\": {\n    \"count\": 2,"), std::string::npos);
   }
-  // Every line ends in a stop.
+  // Each line ends with a stop.
   const Outcome single = command.run("run " + program + " --engine model --single-block");
   EXPECT_EQ(single.out.find("G64 P"), std::string::npos) << single.out;
 }
@@ -200,11 +200,11 @@ TEST(Words, LinesOfFurtherWordsAreLeftOut) {
   EXPECT_NE(refused.err.find("a.gcode:1: unsupported word 'M808'; --accept M808,M555.3,M909,G9 leaves out"),
             std::string::npos)
       << refused.err;
-  // The option may stand before the program, too.
+  // The option may also come before the program.
   const Outcome outcome = command.run("run --check --accept M808,m555.3 --accept M909,g9 " + program);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("no hardware: G9 (1) M555.3 (1) M808 (1) M909 (1)\n"), std::string::npos) << outcome.out;
-  // And takes one argument: a second word behind a space is no word of it.
+  // The option takes one argument: a second word after a space is not part of it.
   const Outcome spaced = command.run("run --check --accept M808,M555.3,M909 G9 " + program);
   EXPECT_EQ(spaced.status, 2) << spaced.out;
   for (const char* word : {"900", "M", "M1.25", "M99999", "M-1", "Mx", "X1"}) {
@@ -219,7 +219,7 @@ TEST(Words, LinesOfFurtherWordsAreLeftOut) {
   }
 }
 
-// A name that breaks a line, is no UTF-8 or is longer than any file's.
+// Names that contain a line break, are not UTF-8, or are longer than any file name.
 TEST(Messages, StayOneShortLineWhateverAFileIsCalled) {
   const Command command;
   const std::string folder = command.path("");
@@ -301,7 +301,8 @@ TEST(Program, FromStandardInputAndPipes) {
   EXPECT_NE(bad.err.find("standard input:2:"), std::string::npos) << bad.err;
 }
 
-// The host reads less of a card with fewer axes before the start: the pulses come earlier, all by as many clocks.
+// On a card with fewer axes the host reads less before the start, so all pulses come earlier by the same number of
+// clocks.
 TEST(Axes, CardHasAsManyAsTheMachine) {
   const Command command;
   std::string machine = contents(TRAMMEL_EXAMPLES_DIR "/machine.toml");
@@ -323,7 +324,7 @@ TEST(Axes, CardHasAsManyAsTheMachine) {
     ASSERT_EQ(steps[i].axis, four[i].axis) << i;
     ASSERT_EQ(steps[i].direction, four[i].direction) << i;
   }
-  // Traced on four axes, and it says so.
+  // The trace shows a card with four axes, and the command says so.
   const Outcome traced = command.run(run + command.path("path3") + three + " --trace " + command.path("x.fst"));
   EXPECT_EQ(traced.status, 0);
   EXPECT_NE(traced.err.find("shows a card with 4 axes"), std::string::npos) << traced.err;
@@ -341,7 +342,7 @@ TEST(Axes, EveryNumberIsBuiltAndTracesSayWhatServes) {
   EXPECT_NE(refused.err.find("4 or 8 axes"), std::string::npos) << refused.err;
 }
 
-// Start and end of an FST file, in steps of half a clock: 64 bits each behind its first block's kind and length.
+// Start and end time of an FST file, in half clocks: 64 bits each, after the kind and the length of its first block.
 std::pair<std::uint64_t, std::uint64_t> times_of(const std::string& file) {
   const std::string text = contents(file);
   const auto number = [&](std::size_t at) {
@@ -370,7 +371,7 @@ TEST(Trace, WindowOfTime) {
   EXPECT_EQ(command.run("info --trace-window 0:1").status, 2) << "no trace";
 }
 
-// The demo would build: a name that is not there shows where it looks, before that.
+// The demo would build something. The name of a missing program is resolved and reported before that.
 TEST(Scripts, NamesAreMeantFromTheCallersFolderAndLogsArePlain) {
   const Command command;
   const std::string scripts = TRAMMEL_EXAMPLES_DIR "/../scripts/";
@@ -384,7 +385,7 @@ TEST(Scripts, NamesAreMeantFromTheCallersFolderAndLogsArePlain) {
   EXPECT_EQ(contents(log), "== hello\n");
 }
 
-// The user's own machine file is taken where none is named, and the summary says so.
+// The user's own machine file is the default, and the summary says so.
 TEST(MachineFile, OfTheUserIsTheDefault) {
   const Command command;
   const std::string program = command.write("x.ngc", "G21 G90 G0 X1\n");
@@ -404,7 +405,7 @@ TEST(MachineFile, OfTheUserIsTheDefault) {
   EXPECT_EQ(command.run(check + " --machine built-in").status, 0);
 }
 
-// Colour is for terminals, and NO_COLOR is obeyed.
+// Colour is for terminals only, and NO_COLOR is obeyed.
 TEST(Colour, IsForTerminalsThatWantIt) {
   const Command command;
   const auto on_terminal = [&](const std::string& environment) {

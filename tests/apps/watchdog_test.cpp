@@ -1,4 +1,4 @@
-// The watchdog of commands that move a card outside: hosts that are stopped, killed or fed slowly.
+// The watchdog of commands that move an external card. The hosts are stopped, killed or fed slowly.
 #include <gmock/gmock.h>
 
 #include <csignal>
@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 
 constexpr const char* kSilent = "WATCHDOG (the program that moved the card was silent for too long)";
 
-// A served card that a program of 10 s moves, under a watchdog of 0.6 s.
+// A served card that a program of 10 s moves, with a watchdog of 0.6 s.
 class WatchedRun : public ::testing::Test {
  protected:
   // Once it moves.
@@ -29,7 +29,7 @@ class WatchedRun : public ::testing::Test {
     return command_.run("run " + command_.write("next.ngc", "G91 G1 X1 F6000\n") + options +
                         " --set motion.watchdog=40 --card " + server_.moving());
   }
-  // It is refused as long as nobody clears the fault, and begins from there then.
+  // A move is refused until the fault is cleared, and then begins at the card's place.
   void expect_cleared_on_request() const {
     const Outcome refused = move("");
     EXPECT_EQ(refused.status, 2);

@@ -1,4 +1,4 @@
-// Cards by trammel.h: who they are, one-shot lines, settings, state, hold and stop.
+// Cards through trammel.h: identification, one-shot lines, settings, state, hold and stop.
 #include <signal.h>
 
 #include "check.h"
@@ -67,7 +67,7 @@ static void one_shot_lines(void) {
   CHECK(steps.at_pins[0] == 20 && steps.at_pins[1] == 40 && steps.at_pins[2] == 0);
   CHECK(steps.position[0] == 20 && steps.position[1] == -40);
 
-  line.duration_ns = 0;  // 3-4-5: 50 pulses of path, 1000 of them a second
+  line.duration_ns = 0;  // 50 pulses of path (30, 40), at 1000 pulses/s
   line.speed_pulses = 1000;
   line.speed_seconds = 1;
   line.pulses[0] = 30;
@@ -100,7 +100,7 @@ static void settings(void) {
   axis.step_space_ns = 0;
   axis.mode = 3;
   FAILS(trammel_configure_axis(card, 0, &axis), TRAMMEL_ARGUMENT, "mode 3");
-  line.pulses[0] = 100;  // a pulse takes 100 clocks at least now
+  line.pulses[0] = 100;  // with these settings a pulse takes at least 100 clocks
   line.duration_ns = 5000000;
   FAILS(trammel_start_line(card, &line, NULL), TRAMMEL_ARGUMENT, "axis 0");
   trammel_close(card);
@@ -156,7 +156,7 @@ static void hold_and_stop(void) {
   trammel_close(card);
 }
 
-// A hold that was there before a line is found at once; a take-over ends it.
+// A call reports an earlier hold at once. trammel_take_over() ends the hold.
 static void held(void) {
   trammel_card* card = simulated_card();
   trammel_one_shot line;
@@ -187,7 +187,7 @@ static bool signal_came(void* context) {
   return g_signalled != 0;
 }
 
-// A line of an hour ends with the signal, and the card is empty and at rest.
+// A signal ends a line of 100 hours. The card is then empty and at rest.
 static void interrupts(void) {
   trammel_card* card = simulated_card();
   trammel_one_shot line;

@@ -1,18 +1,18 @@
-// Every way in which a call of trammel.h can fail that a working card does not show.
+// Failures of trammel.h calls that do not occur with a working card.
 #include <pthread.h>
 
 #include "check.h"
 
-// A bus in front of a simulated card, which fails, lies or hides refusals.
+// A bus in front of a simulated card. It can fail, report wrong data or hide refusals.
 typedef struct bad_bus {
   trammel_card* behind;
   size_t transfers;
-  size_t fail_at;     // this transfer, from 1
-  size_t too_many;    // says that it made so many more
-  uint32_t magic;     // where not 0: what MAGIC reads as
-  bool posted;        // refusals do not show
-  const char* why;    //
-  uint64_t slept_ns;  //
+  size_t fail_at;     // number of the transfer that fails, from 1; 0: none
+  size_t too_many;    // reports this many accesses more than it made
+  uint32_t magic;     // if not 0: value that MAGIC reads as
+  bool posted;        // refusals are not reported
+  const char* why;    // text of the failure
+  uint64_t slept_ns;  // sum of all sleeps
 } bad_bus;
 
 static size_t transfer(void* context, trammel_access* accesses, size_t count) {
@@ -106,7 +106,7 @@ static void own_bus(void) {
   is.magic = 0;
   is.posted = true;
   bus.reports_refusals = false;
-  bus.sleep = NULL;  // a thread's sleep does not move the simulated card behind
+  bus.sleep = NULL;  // the default sleep of the thread does not advance the simulated card behind the bus
   DONE(trammel_open_bus(&bus, &card));
   DONE(trammel_start_line(card, &line, NULL));
   FAILS(trammel_start_line(card, &line, NULL), TRAMMEL_REFUSED, "BUSY");
@@ -145,7 +145,7 @@ static void one_shot_arguments(void) {
   line.speed_pulses = 1;
   FAILS(trammel_start_line(card, &line, NULL), TRAMMEL_ARGUMENT, "not both");
   line.duration_ns = 0;
-  FAILS(trammel_start_line(card, &line, NULL), TRAMMEL_ARGUMENT, "");  // in 0 seconds
+  FAILS(trammel_start_line(card, &line, NULL), TRAMMEL_ARGUMENT, "");  // duration 0
   line.speed_seconds = 1;
   line.pulses[0] = INT64_C(1) << 41;
   line.speed_pulses = 100000;
@@ -193,7 +193,7 @@ static void command_arguments(void) {
   command = command_of(11);
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "kind 11");
   command = command_of(TRAMMEL_END);
-  DONE(trammel_put(card, &command));  // after all these the stream is as it was
+  DONE(trammel_put(card, &command));  // the refused commands did not change the stream
   DONE(trammel_finish(card, NULL));
   trammel_close(card);
 }
@@ -213,7 +213,7 @@ static void raw_accesses(void) {
   trammel_close(card);
 }
 
-// No card, for every function that takes one. Over a screen: a line for each function.
+// A null card for every function that takes a card. Over a screen: a line for each function.
 static void null_cards(void) {
   trammel_access access = {0, 0, false};
   trammel_command command = command_of(TRAMMEL_END);
@@ -346,7 +346,7 @@ static void null_cards(void) {
   trammel_request_stop(NULL);
 }
 
-// NULL where there must be something else.
+// Null pointers in other arguments.
 static void null_pointers(void) {
   trammel_card* card = simulated_card();
   trammel_access access = {0, 0, false};
@@ -379,7 +379,7 @@ static void null_pointers(void) {
   FAILS(trammel_probe(card, NULL, &command, 1, &probe), TRAMMEL_ARGUMENT, "condition is null");
   FAILS(trammel_probe(card, &condition, NULL, 1, &probe), TRAMMEL_ARGUMENT, "paths is null");
   FAILS(trammel_probe(card, &condition, &command, 1, NULL), TRAMMEL_ARGUMENT, "result is null");
-#ifndef TRAMMEL_SANITIZED  // where running out of memory ends the process
+#ifndef TRAMMEL_SANITIZED  // a sanitizer ends the process when memory runs out
   FAILS(trammel_probe(card, &condition, &command, (size_t)1 << 46, &probe), TRAMMEL_MEMORY, "memory");
 #endif
   trammel_close(card);
@@ -416,7 +416,7 @@ static void* stop_it(void* card) {
   return NULL;
 }
 
-// From a real thread, while the other one waits in a line of 2^39 clocks.
+// A second thread requests a stop while the first one waits for a line of 2^39 clocks.
 static void stopped_by_a_thread(void) {
   trammel_card* card = simulated_card();
   trammel_one_shot line;

@@ -1,7 +1,7 @@
-// Captures, soft limits, drives and the emergency stop by trammel.h.
+// Captures, soft limits, drives and the emergency stop through trammel.h.
 #include "check.h"
 
-#define TOUCH 3  // the input that captures look at
+#define TOUCH 3  // input that the captures watch
 #define SECOND 1000000000
 
 static trammel_status state_now(trammel_card* card) {
@@ -19,7 +19,7 @@ static uint16_t outputs_of(trammel_card* card) {
 
 static void pass(trammel_card* card, uint64_t clocks) { DONE(trammel_simulated_wait(card, clocks)); }
 
-// 1000 pulses/s along axis 0.
+// A line along axis 0 at 1000 pulses/s.
 static trammel_one_shot line_by(int64_t pulses) {
   trammel_one_shot line;
   memset(&line, 0, sizeof line);
@@ -45,7 +45,7 @@ static trammel_capture_state unit_of(trammel_card* card, unsigned unit) {
   return states.units[unit];
 }
 
-// A card whose input has a filter of 640 clocks, and a unit that watches it.
+// A card with a filter of 640 clocks at input TOUCH, and a capture unit that watches this input.
 static trammel_card* card_that_captures(unsigned unit, bool both, bool continuous) {
   trammel_card* card = simulated_card();
   trammel_capture_select select = {TOUCH, true, false, false, false};
@@ -60,7 +60,7 @@ static trammel_card* card_that_captures(unsigned unit, bool both, bool continuou
   return card;
 }
 
-// Time and position of the first touch, not of the end of the filter.
+// A capture holds time and position of the first touch, not of the end of the filter.
 static void an_edge_in_motion(void) {
   trammel_card* card = card_that_captures(2, false, false);
   trammel_snapshot before;
@@ -117,7 +117,7 @@ static void waiting_for_edges(void) {
   trammel_close(card);
 }
 
-// More edges than the queue holds: the oldest stay.
+// After more edges than the queue holds, the oldest ones remain.
 static void a_queue_of_edges(void) {
   trammel_card* card = card_that_captures(0, true, true);
   trammel_capture_select select = {TOUCH, true, true, true, true};
@@ -191,7 +191,7 @@ static void soft_limits(void) {
   DONE(trammel_read_limit_state(card, &state));
   CHECK(state.soft_axis == 0 && state.soft_plus);
   DONE(trammel_clear_faults(card));
-  go(card, -600);  // back is free, until the other end
+  go(card, -600);  // motion back is allowed, up to the other limit
   FAILS(trammel_wait_until_idle(card, SECOND), TRAMMEL_FAULT, "SOFT_LIMIT (axis 0 minus)");
   DONE(trammel_clear_faults(card));
   DONE(trammel_set_soft_limits(card, NULL, 0));
@@ -202,7 +202,7 @@ static void soft_limits(void) {
   trammel_close(card);
 }
 
-// How far beyond its end of 100 an axis comes to rest, at a ramp of 0.1 s.
+// Pulses beyond its soft limit of 100 at which an axis comes to rest, with a ramp of 0.1 s or without.
 static int32_t beyond(bool ramp) {
   trammel_card* card = simulated_card();
   const trammel_soft_range range = {true, 0, 100};
@@ -231,7 +231,8 @@ static void bad_soft_limits(void) {
   trammel_close(card);
 }
 
-// Rounded up to 4,096 clocks and to 2^20 of 1 us.
+// The card rounds the times up: idle_ns to multiples of 2^20 clocks, the others to multiples of 4,096 clocks, of 1 us
+// each.
 static trammel_enable_sequence some_sequence(void) {
   trammel_enable_sequence sequence;
   memset(&sequence, 0, sizeof sequence);
@@ -263,7 +264,7 @@ static void a_sequence(void) {
   pass(card, 4096);
   CHECK(!state_now(card).enable_waits && state_now(card).enabled);
   DONE(trammel_wait_until_idle(card, SECOND));
-  pass(card, 1 << 20);  // and 12,288 clocks, in the midst of which this is
+  pass(card, 1 << 20);  // the brake is set 2^20 + 12,288 clocks after the last step; these have not passed yet
   CHECK(state_now(card).enabled && outputs_of(card) == 3);
   pass(card, 12288);
   CHECK(outputs_of(card) == 1);
@@ -304,7 +305,7 @@ static void health_and_safe_levels(void) {
   CHECK((outputs_of(card) & 4) != before);
   DONE(trammel_simulated_set_emergency_stop(card, true));
   pass(card, 1000);
-  CHECK(outputs_of(card) == 1);  // no wave, not healthy, and the safe level
+  CHECK(outputs_of(card) == 1);  // the health outputs (masks 4 and 8) are low; output 0 has its safe level
   trammel_close(card);
 }
 
@@ -337,7 +338,7 @@ static bool is_stopped(trammel_card* card) {
   return stopped;
 }
 
-// Of a line of 600 pulses, pressed at 100: where it comes to rest.
+// Position at which a line of 600 pulses comes to rest if the emergency stop is pressed at pulse 100.
 static int32_t pressed_at_100(bool ramp) {
   trammel_card* card = simulated_card();
   trammel_rest rest;
@@ -354,7 +355,7 @@ static int32_t pressed_at_100(bool ramp) {
   DONE(trammel_wait_until_stopped(card, SECOND));
   DONE(trammel_read_rest(card, &rest));
   DONE(trammel_clear_faults(card));
-  CHECK(is_stopped(card));  // as long as it is pressed
+  CHECK(is_stopped(card));  // clearing has no effect while the button is pressed
   DONE(trammel_simulated_set_emergency_stop(card, false));
   pass(card, 100);
   CHECK(is_stopped(card));

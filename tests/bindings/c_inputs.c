@@ -1,7 +1,7 @@
-// Machine inputs by trammel.h: filters, roles, what they stop, and where a stop has left the card (REST).
+// Machine inputs through trammel.h: filters, roles, the stops that they cause, and the position after a stop (REST).
 #include "check.h"
 
-#define X_PLUS 3  // inputs of the switches and buttons below
+#define X_PLUS 3  // inputs of the switch and the buttons of these tests
 #define HOLD 5
 #define START 6
 
@@ -26,13 +26,13 @@ static trammel_rest rest_of(trammel_card* card) {
   return rest;
 }
 
-// A level, and the time that roles take to see it without a filter.
+// Sets a level and waits until roles without a filter have seen it.
 static void set(trammel_card* card, unsigned input, bool level) {
   DONE(trammel_simulated_set_input(card, input, level));
   DONE(trammel_simulated_wait(card, 200));
 }
 
-// 1000 pulses/s.
+// Starts a line along axis 0 at 1000 pulses/s.
 static void start_line(trammel_card* card, int64_t pulses) {
   trammel_one_shot line;
   memset(&line, 0, sizeof line);
@@ -92,7 +92,7 @@ static void roles_and_buttons(void) {
   trammel_close(card);
 }
 
-// The switch stands as an axis steps into it: a ramp of 0.1 s, which takes 50 pulses.
+// Axis 0 runs into its limit switch and stops on a ramp of 0.1 s, which takes 50 pulses.
 static trammel_card* card_on_a_limits_ramp(uint32_t overtravel) {
   trammel_card* card = simulated_card();
   trammel_input_stops stops;
@@ -123,7 +123,7 @@ static void a_limit(void) {
   DONE(trammel_read_snapshot(card, &now));
   CHECK(rest.time != 0 && rest.exact && rest.status.direct && rest.position[0] == now.position[0]);
   CHECK(rest.position[0] > 230 && rest.position[0] < 260);
-  // Clocks of the line: 1000 for each pulse that is left.
+  // The ticks of a direct line are clocks: 1000 for each remaining pulse.
   CHECK(rest.ticks_left / 1000 == (uint64_t)(500 - rest.position[0]));
   DONE(trammel_read_limit_state(card, &state));
   CHECK(state.plus == 1 && state.minus == 0 && state.drive_fault == 0);
@@ -132,7 +132,7 @@ static void a_limit(void) {
   DONE(trammel_clear_faults(card));
   DONE(trammel_read_fault_text(card, text, sizeof text));
   CHECK(strcmp(text, "none") == 0);
-  // Away is free, further into it is not, but by an override.
+  // Motion away from the switch is allowed. Motion further into it needs an override.
   start_line(card, -20);
   DONE(trammel_wait_until_idle(card, 1000000000));
   start_line(card, 10);
@@ -153,7 +153,7 @@ static void overtravel_ends_at_once(void) {
   trammel_close(card);
 }
 
-// A program that clears and goes on finds a card that takes its commands.
+// A program that clears the fault on the ramp and continues finds a card that accepts its commands.
 static void clearing_on_the_ramp(void) {
   trammel_card* card = card_on_a_limits_ramp(60);
   CHECK(status_of(card).stopping);
@@ -179,7 +179,7 @@ static void under_run(void) {
   trammel_card* card = simulated_card();
   trammel_command feed = feed_of(1000);
   trammel_command line = line_of(1000, 10, 0);
-  feed.as.feed.stop_distance = 500;  // more is to come, and does not
+  feed.as.feed.stop_distance = 500;  // not 0: the card expects more commands, which never come
   DONE(trammel_open_stream(card, NULL));
   DONE(trammel_put(card, &feed));
   DONE(trammel_put(card, &line));

@@ -1,4 +1,4 @@
-// The simulated machine, homing and places in mm by trammel_machine.h.
+// The simulated machine, homing and places in mm through trammel_machine.h.
 #include <math.h>
 
 #include "check.h"
@@ -33,7 +33,7 @@ static trammel_world_state state_of(trammel_world* world) {
   return state;
 }
 
-// Null where there is none.
+// Null if there is no contact of this name.
 static const trammel_world_contact* contact_in(const trammel_world_state* state, const char* name) {
   uint32_t n;
   for (n = 0; n < state->contact_count; ++n) {
@@ -67,12 +67,12 @@ static void what_it_is_like(void) {
   DONE(trammel_release(world, "feed_hold", NULL, NS_OF_SECOND, NULL));
   CHECK(!is_pressed(world, "feed_hold"));
   trammel_close(card);
-  CHECK(state_of(world).axis_count == 4);  // it outlives the card
+  CHECK(state_of(world).axis_count == 4);  // the world outlives the card
   trammel_close_world(world);
   trammel_close_world(NULL);
 }
 
-// 40 mm/s along X of the default world: 80 pulses/mm.
+// Starts a line along X at 40 mm/s; X of the default world has 80 pulses/mm.
 static void start_x(trammel_card* card, double mm) {
   trammel_one_shot line;
   memset(&line, 0, sizeof line);
@@ -188,7 +188,7 @@ static void homing_that_fails(void) {
         "no axis of the machine file has a [homing]");
   FAILS(trammel_home(card, NULL, "", NULL, NULL, NULL), TRAMMEL_ARGUMENT, "machine is null");
   FAILS(trammel_home(NULL, machine, "", NULL, NULL, NULL), TRAMMEL_ARGUMENT, "card is null");
-  DONE(trammel_set_hold(card, true));  // the card is still slowing down to it
+  DONE(trammel_set_hold(card, true));  // the time base is still slewing to 0
   FAILS(trammel_home(card, machine, "Y", NULL, NULL, NULL), TRAMMEL_HELD, "the card holds");
   trammel_free_machine(plain);
   trammel_free_machine(machine);

@@ -1,4 +1,5 @@
-// The machine's place by trammel.h: what the card keeps, where a program begins, what loses it and what sets it anew.
+// The machine's place through trammel.h: the place that the card keeps, the beginning of a program at this place, its
+// loss, and setting it again.
 #include "check.h"
 
 #define ALL_AXES 0xF
@@ -19,7 +20,7 @@ static void move(trammel_card* card, int64_t x, int64_t y) {
   DONE(trammel_run_line(card, &line, 1000000000, NULL));
 }
 
-// Axis 0 moves, and is stopped at once.
+// Axis 0 moves and is cut in motion.
 static void cut_off(trammel_card* card) {
   trammel_one_shot line;
   memset(&line, 0, sizeof line);
@@ -32,7 +33,7 @@ static void cut_off(trammel_card* card) {
   DONE(trammel_simulated_wait(card, 1000));
 }
 
-// The first program sets machine zero where the card stands, the next one goes on from there.
+// The first program sets machine zero at the present position. The next program continues from the place.
 static void begins_at_the_place(void) {
   trammel_card* card = simulated_card();
   trammel_place place = place_of(card);
@@ -60,7 +61,7 @@ static void a_lost_place(void) {
   CHECK(place.valid == (ALL_AXES & ~1) && place.pulses[0] > 50);
   FAILS(trammel_begin_at_place(card, 3, false, NULL), TRAMMEL_STATE, "of axis 0 was lost");
   CHECK(place_of(card).valid == (ALL_AXES & ~1));
-  DONE(trammel_begin_at_place(card, 2, false, NULL));  // another axis
+  DONE(trammel_begin_at_place(card, 2, false, NULL));  // only axis 1, whose place is valid
   DONE(trammel_begin_at_place(card, 3, true, &place));
   CHECK(place.valid == ALL_AXES && !place.first);
   DONE(trammel_set_keeps_place(card, 1));
@@ -70,7 +71,7 @@ static void a_lost_place(void) {
   trammel_close(card);
 }
 
-// What a homing does, and a program with scales of its own.
+// The calls that a homing makes, and a program with its own scales.
 static void set_by_hand(void) {
   trammel_card* card = simulated_card();
   trammel_place place;
@@ -78,14 +79,14 @@ static void set_by_hand(void) {
   DONE(trammel_begin_at_place(card, 1, false, NULL));
   DONE(trammel_set_place(card, 1, false, false));
   CHECK(place_of(card).valid == (ALL_AXES & ~1));
-  DONE(trammel_set_machine_zero(card, 0, 100 - 25));  // it stands at 25
+  DONE(trammel_set_machine_zero(card, 0, 100 - 25));  // the place is then 25
   DONE(trammel_set_place(card, 1, true, true));
   DONE(trammel_set_scales(card, 0xC0FFEE));
   place = place_of(card);
   CHECK(place.valid == ALL_AXES && place.homed == 1 && place.pulses[0] == 25 && place.scales == 0xC0FFEE);
   DONE(trammel_begin_at_place(card, 1, false, &place));
   CHECK(!place.first && place.scales == 0xC0FFEE && place.homed == 1);
-  // The counters wrap, the distance does not.
+  // The difference of counter and machine zero wraps to 32 bits.
   DONE(trammel_set_machine_zero(card, 0, INT32_MIN));
   CHECK(place_of(card).pulses[0] == INT32_MIN + 100);
   trammel_close(card);

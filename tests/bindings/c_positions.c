@@ -1,17 +1,18 @@
-// Position streaming by trammel.h: periods in time, late, missing; what is refused before anything is sent.
+// Position streaming through trammel.h: periods in time, late and missing; periods that are refused before anything is
+// sent.
 #include "check.h"
 
 #define MILLISECOND 1000000  // ns
-#define PERIOD 1000          // the same in clocks of the simulated card
+#define PERIOD 1000          // a millisecond in clocks of the simulated card
 #define PERIODS 50
-#define SPEED 20  // pulses a period
+#define SPEED 20  // pulses per period
 
 static void streaming(trammel_card* card, const trammel_position_options* options) {
   DONE(trammel_set_slew_time(card, 10 * MILLISECOND));
   DONE(trammel_open_positions(card, options));
 }
 
-// Axis 0 is at `x` pulses at the period's end, axis 1 a quarter of a pulse before.
+// Sends a period at whose end axis 0 is at `x` pulses and axis 1 at `x` - 1/4 pulses.
 static trammel_result send_to(trammel_card* card, int64_t x, trammel_position_sent* sent) {
   int64_t targets[TRAMMEL_MAX_AXES] = {0};
   targets[0] = x * TRAMMEL_POSITION_PULSE;
@@ -19,14 +20,15 @@ static trammel_result send_to(trammel_card* card, int64_t x, trammel_position_se
   return trammel_send_positions(card, targets, MILLISECOND, sent);
 }
 
-// The card's clock comes to this; an access takes some clocks too.
+// Waits until the card's time is at least `clock`. The read takes some clocks itself.
 static void wait_until(trammel_card* card, uint64_t clock) {
   trammel_snapshot snapshot;
   DONE(trammel_read_snapshot(card, &snapshot));
   if (snapshot.time < clock) DONE(trammel_simulated_wait(card, clock - snapshot.time));
 }
 
-// Each period when it is due, `late_one` of them so many clocks later. Gives back the ticks that the card went on for.
+// Sends each period when it is due; period number `late_one` is sent `late` clocks later. Returns the sum of the stale
+// ticks.
 static uint64_t send_periods(trammel_card* card, int periods, int late_one, uint64_t late) {
   trammel_position_sent sent;
   uint64_t stale = 0;
@@ -59,19 +61,19 @@ static void periods_in_time(void) {
   trammel_close(card);
 }
 
-// Half a period late: the card goes on along the line, says for how long, and is back at its times soon.
+// Half a period late: the card continues along the line, reports the stale ticks, and soon catches up.
 static void a_late_period(void) {
   trammel_card* card = simulated_card();
   uint64_t stale;
   streaming(card, NULL);
   stale = send_periods(card, PERIODS, 21, PERIOD + PERIOD / 2);
-  CHECK(stale > PERIOD / 8 && stale <= PERIOD / 4);  // 500 clocks less what the first sending took
+  CHECK(stale > PERIOD / 8 && stale <= PERIOD / 4);  // 500 clocks are 250 ticks; the first transfer took some of them
   DONE(send_to(card, SPEED * PERIODS, NULL));
   DONE(trammel_finish_positions(card, NULL));
   trammel_close(card);
 }
 
-// None comes any more: the card stops on the line, and goes on from there.
+// No further period arrives: the card stops on the line, and continues from there after trammel_recover_positions().
 static void a_missing_period(void) {
   trammel_card* card = simulated_card();
   trammel_position_stop stop;
@@ -114,7 +116,7 @@ static void what_is_refused(void) {
   options.max_speed[0] = 1000;
   DONE(trammel_open_stream(card, NULL));
   streaming(card, &options);
-  FAILS(send_to(card, 3, NULL), TRAMMEL_ARGUMENT, "axis 0");  // 3 pulses in a millisecond
+  FAILS(send_to(card, 3, NULL), TRAMMEL_ARGUMENT, "axis 0");  // 3 pulses in 1 ms exceed max_speed
   FAILS(trammel_send_positions(card, targets, 10, NULL), TRAMMEL_ARGUMENT, "clocks");
   FAILS(trammel_send_positions(card, targets, -1, NULL), TRAMMEL_ARGUMENT, "ns");
   targets[7] = 1;

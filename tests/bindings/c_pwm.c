@@ -1,4 +1,4 @@
-// PWM by trammel.h.
+// PWM through trammel.h.
 #include "check.h"
 
 static void a_duty_in_the_stream(void) {
@@ -17,7 +17,7 @@ static void a_duty_in_the_stream(void) {
   DONE(trammel_read_pwm(card, now));
   CHECK(now[0].period == 1000 && now[0].outputs == 1 && now[1].period == 200 && now[1].outputs == 0);
   DONE(trammel_open_stream(card, NULL));
-  duty.as.pwm.duty = 0x4000;  // a quarter
+  duty.as.pwm.duty = 0x4000;  // duty of 1/4
   DONE(trammel_put(card, &feed));
   DONE(trammel_put(card, &line));
   DONE(trammel_put(card, &duty));
@@ -26,7 +26,7 @@ static void a_duty_in_the_stream(void) {
   trammel_close(card);
 }
 
-// A bus that notes the words of the stream.
+// A bus that records the words of the stream.
 typedef struct noting_bus {
   trammel_card* behind;
   uint32_t words[64];
@@ -46,7 +46,7 @@ static size_t note_and_transfer(void* context, trammel_access* accesses, size_t 
   return made;
 }
 
-// Its last three halfwords, as docs/reference/commands.md of the project has them: select, duty, gain.
+// The last three halfwords of the command are select, duty and gain, as in docs/reference/commands.md.
 static void a_duty_in_words(void) {
   noting_bus is;
   trammel_bus bus;

@@ -1,4 +1,4 @@
-// The stream of commands by trammel.h.
+// The stream of commands through trammel.h.
 #include "check.h"
 
 static void put_all(trammel_card* card, const trammel_command* commands, size_t count) {
@@ -7,7 +7,7 @@ static void put_all(trammel_card* card, const trammel_command* commands, size_t 
 }
 
 static trammel_command arc_of(int32_t kind, uint64_t ticks) {
-  trammel_command command = command_of(kind);  // a quarter about (-100, 0), anticlockwise, to (-100, 100)
+  trammel_command command = command_of(kind);  // a quarter circle about (-100, 0), anticlockwise, to (-100, 100)
   command.as.arc.ticks = ticks;
   command.as.arc.centre_x = -100 * 256;
   command.as.arc.end_x = -100;
@@ -18,7 +18,7 @@ static trammel_command arc_of(int32_t kind, uint64_t ticks) {
 }
 
 static trammel_command ellipse_of(uint64_t ticks) {
-  trammel_command command = command_of(TRAMMEL_ELLIPSE);  // a half, from (50, 0) over (0, 20) to (-50, 0)
+  trammel_command command = command_of(TRAMMEL_ELLIPSE);  // half an ellipse, from (50, 0) through (0, 20) to (-50, 0)
   command.as.ellipse.ticks = ticks;
   command.as.ellipse.semi_x = 50;
   command.as.ellipse.semi_y = 20;
@@ -107,7 +107,8 @@ typedef struct watch {
   trammel_progress last;
 } watch;
 
-// Acts at one look, or ends the call where there is nothing to do. Lets go what is held.
+// Progress callback. Call number act_at calls act(), or cancels the wait if act is null. The 20th call in a hold
+// releases it.
 static bool look(void* context, const trammel_progress* progress) {
   watch* is = (watch*)context;
   is->last = *progress;
@@ -190,7 +191,7 @@ static void requests(void) {
   open_watched(&is, card, NULL);
   long_line(card);
   FAILS(trammel_finish(card, NULL), TRAMMEL_CANCELLED, "callback");
-  DONE(trammel_finish(card, NULL));  // still open, and still moving
+  DONE(trammel_finish(card, NULL));  // the stream is still open and the card still moves
   DONE(trammel_read_snapshot(card, &snapshot));
   CHECK(snapshot.position[0] > 2000);
 
@@ -241,7 +242,7 @@ static void watchdog(void) {
   DONE(trammel_set_watchdog(card, 10000000));
   DONE(trammel_simulated_wait(card, 1000000));
   DONE(trammel_read_faults(card, &is));
-  CHECK(is == 0xC000);  // the watchdog, and the link's time beside it
+  CHECK(is == 0xC000);  // WATCHDOG and LINK_LOSS
   DONE(trammel_set_watchdog(card, 0));
   DONE(trammel_clear_faults(card));
   DONE(trammel_simulated_wait(card, 1000000));
@@ -253,7 +254,7 @@ static void watchdog(void) {
 static void refusals(void) {
   trammel_card* card = simulated_card();
   trammel_command feed = feed_of(100);
-  trammel_access rubbish = {0x610, 0xFFFFFFFF, true};  // a word of the stream that begins no command
+  trammel_access rubbish = {0x610, 0xFFFFFFFF, true};  // a word of the stream with which no command begins
   size_t made = 1;
   DONE(trammel_open_stream(card, NULL));
   DONE(trammel_put(card, &feed));
@@ -268,7 +269,7 @@ static void refusals(void) {
   trammel_close(card);
 }
 
-// A line up to a speed and down to rest, an output switched in its middle: the listener gets each change.
+// Output changes that the listener has received.
 typedef struct changes {
   trammel_output_change change[4];
   unsigned count;
@@ -323,7 +324,7 @@ static void ramps_and_outputs(void) {
   CHECK(noted.count == 2);
   CHECK(noted.change[0].changed == 5 && noted.change[0].levels == 5);
   CHECK(noted.change[1].changed == 4 && noted.change[1].levels == 1);
-  // 1,000 ticks from 0 to 20,000 ticks/s and back: 100 ms each, less up to a tick at rest (2.3 ms).
+  // 1,000 ticks from 20,000 ticks/s to 0 take 100 ms, or less by at most the tick closest to rest (2.3 ms).
   CHECK(noted.change[1].cycle - noted.change[0].cycle > 97000 &&
         noted.change[1].cycle - noted.change[0].cycle < 100100);
   DONE(trammel_simulated_listen_to_outputs(card, NULL, NULL));

@@ -1,4 +1,4 @@
-// What the tests of trammel.h share: checks that count, and cards.
+// Shared by the tests of trammel.h: checks, a count of the checks, and cards.
 #ifndef CHECK_H
 #define CHECK_H
 
@@ -21,7 +21,7 @@ extern unsigned long checks_failed;
 
 // A call that must succeed.
 #define DONE(call) check_result((call), TRAMMEL_OK, "", __FILE__, __LINE__)
-// A call that must fail so, with `words` in its text.
+// A call that must fail with `result` and with `words` in the error text.
 #define FAILS(call, result, words) check_result((call), (result), (words), __FILE__, __LINE__)
 
 void check_result(trammel_result is, trammel_result wanted, const char* words, const char* file, int line);
@@ -30,7 +30,7 @@ void check_result(trammel_result is, trammel_result wanted, const char* words, c
 trammel_card* simulated_card(void);
 
 trammel_command line_of(uint64_t ticks, int64_t x, int64_t y);
-// A tick every 16 clocks.
+// A feed piece with one tick every 16 clocks.
 trammel_command feed_of(uint64_t ticks);
 trammel_command command_of(int32_t kind);
 

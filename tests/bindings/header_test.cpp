@@ -1,4 +1,4 @@
-// trammel.h from C++: it compiles there, and what a callback throws against the rules does not get out.
+// trammel.h in C++: it compiles, and an exception that a callback throws against the rules does not leave the library.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -11,7 +11,7 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<trammel_command> && std::is_standard_layout_v<trammel_command>);
 static_assert(TRAMMEL_OK == 0);
-// As many levels as a card may have inputs.
+// 32 bits: one for each input that a card may have.
 static_assert(std::is_same_v<decltype(trammel_simulated_set_inputs), trammel_result(trammel_card*, std::uint32_t)>);
 
 template <class Thrown>

@@ -1,4 +1,4 @@
-// trammel_machine.h at the machine of a served card.
+// trammel_machine.h with the simulated machine of a served card.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 constexpr std::uint32_t kClock = 1'000'000;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// A server in a thread of its own.
+// Runs a server in a second thread.
 class ServedWorldTest : public ::testing::Test {
  protected:
   ServedWorldTest() {

@@ -54,7 +54,7 @@ TEST(Figure, HasTitlesLabelsTicksAndLegend) {
 TEST(Figure, EndsOfTheRangeLieOnTheFrame) {
   Figure figure(400, 300);
   figure.add(one_line(), {0, 0, 400, 300});
-  // 62 to 384 across, 260 up to 45 (a title and one row of legend).
+  // The frame: x from 62 to 384, y from 260 (bottom) to 45 (top, below a title and one row of legend).
   EXPECT_THAT(figure.svg(), HasSubstr("points=\"62.0,260.0 384.0,45.0\""));
 }
 
@@ -74,7 +74,7 @@ TEST(Figure, EqualScaleMakesAUnitAsLongInBothAxes) {
   panel.series[0].mark = Mark::kDots;
   panel.series[0].points = {{0, 0}, {10, 0}, {0, 10}};
   const std::string svg = grid_of({panel}, 1, 400, 300);
-  // Height rules: 215 pixels of which 96 % take 10 units; the three dots in the middle of the frame.
+  // The height sets the scale: 10 units take 96 % of 215 pixels. The three dots are centred in the frame.
   EXPECT_THAT(svg, HasSubstr("cx=\"119.8\" cy=\"255.7\""));
   EXPECT_THAT(svg, HasSubstr("cx=\"326.2\" cy=\"255.7\""));
   EXPECT_THAT(svg, HasSubstr("cx=\"119.8\" cy=\"49.3\""));
@@ -117,7 +117,7 @@ TEST(Figure, OfNothingOneValueOrWhatIsNoNumberIsAPictureStill) {
 TEST(Figure, ALegendTakesAsManyRowsAsItNeedsAndTheDataBeginBelow) {
   Panel panel = one_line();
   for (int i = 0; i < 6; ++i) panel.series.push_back({"a rather long label", colour(1), {{0, 0}, {1, 10}}});
-  // About 171 pixels an entry, 338 a row: the first two share one, so six rows of 17.
+  // Seven entries: about 171 pixels each, 338 per row. The first two share a row, so there are six rows of 17 pixels.
   EXPECT_THAT(grid_of({panel}, 1, 400, 300), HasSubstr("384.0,130.0\""));
 }
 

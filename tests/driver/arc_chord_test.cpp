@@ -1,5 +1,5 @@
-// What the driver makes of an arc for the arc generator. That its arcs end where they should and stay on the circle is
-// judged on the golden model: tests/model/arc_generator_test.cpp.
+// Fields of the commands that the driver makes for the arc generator. tests/model/arc_generator_test.cpp checks on the
+// golden model that these arcs end at their end point and stay on the circle.
 #include "trammel/driver/arc_chord.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// About a centre on the left, from an angle of 0.
+// A circle from an angle of 0, so its centre is to the left of the start.
 HelixGeometry circle_of(std::int64_t radius) {
   HelixGeometry helix;
   helix.arc.centre_x = -radius * kCentreUnitsPerPulse;
@@ -38,7 +38,7 @@ std::string refusal_of(const HelixGeometry& helix, std::uint64_t ticks = 1 << 20
 TEST(ArcChord, FieldsOfACircle) {
   const ArcChordCommand arc = make_helix(circle_of(1024), 1'000'000);
   EXPECT_EQ(arc.k, 6) << "1024 / 2^6 is 16";
-  // 402.1 chords of 16 pulses; 2^11 ticks each are the most that fit.
+  // 402.1 chords of 16 pulses. 2^11 path ticks per chord is the largest number that fits into the ticks.
   EXPECT_EQ(arc.m, 11);
   EXPECT_EQ(arc.path_ticks, static_cast<std::uint64_t>(std::llround(kPi / std::asin(0x1p-7) * 2048)));
   EXPECT_EQ(arc.ticks, 1'000'000U);
@@ -61,7 +61,7 @@ TEST(ArcChord, ClockwiseIsTheMirrorImage) {
   EXPECT_NEAR(static_cast<double>(right.first_y), static_cast<double>(-left.first_y), 1);
 }
 
-// The sagitta of a chord is R (1 - cos(turn / 2)), about R / 2^(2k + 3); a chord of 16 pulses or less.
+// The sagitta of a chord is R (1 - cos(turn / 2)), about R / 2^(2k + 3). A chord has at most 16 pulses.
 TEST(ArcChord, TheSmallestShiftThatKeepsTheSagitta) {
   for (double radius = 1; radius < 2e9; radius *= 1.3) {
     const auto whole = static_cast<std::int64_t>(radius);
@@ -106,14 +106,15 @@ TEST(ArcChord, FurtherAxesGoAlongLines) {
   EXPECT_EQ(arc.increment[1], std::llround(-77 * 0x1p40 / length));
   EXPECT_EQ(arc.increment[5], std::llround(3 * 0x1p40 / length));
   EXPECT_EQ(arc.increment[3], 0);
-  // A pulse a tick at most: more of them ask for more ticks.
+  // At most one pulse per path tick: more pulses of a further axis need more ticks.
   const std::uint64_t least = least_chord_ticks(helix);
   helix.further[1] = static_cast<std::int64_t>(8 * least - 100);
   EXPECT_GE(least_chord_ticks(helix), 8 * least - 100);
   EXPECT_THAT(refusal_of(helix, 7 * least), HasSubstr("too few"));
 }
 
-// The sweep tells a short way from a full turn; more than what rounding explains is a contradiction.
+// The sweep distinguishes a short way from a full turn. A larger contradiction to the end point than rounding explains
+// is refused.
 TEST(ArcChord, SweepAndPoints) {
   HelixGeometry helix = circle_of(1000);
   const std::uint64_t one = make_helix(helix, 1 << 20).path_ticks;
@@ -159,7 +160,7 @@ TEST(ArcChord, RefusesWhatContradictsItself) {
   EXPECT_THAT(with([](HelixGeometry& h) { h.further[3] = std::int64_t{1} << 38; }), HasSubstr("further axis"));
 }
 
-// More path ticks than 2^37, whatever the density.
+// These arcs need more than 2^37 path ticks at any density.
 TEST(ArcChord, FurtherAxesMayAskForTooMuch) {
   HelixGeometry helix = circle_of(1000);
   helix.further[2] = std::int64_t{1} << 32;
@@ -174,7 +175,7 @@ TEST(ArcChord, FurtherAxesMayAskForTooMuch) {
   }
 }
 
-// Fields of many arcs as one number, taken on x86-64: other hosts must come to it.
+// A hash of the fields of many arcs, computed on x86-64. Other hosts must get the same value.
 TEST(ArcChord, GivesTheSameFieldsOnEveryHost) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   const auto add = [&](std::int64_t value) {

@@ -1,5 +1,5 @@
-// Circular arcs from the driver's mathematics, walked by the golden model: the end point, the number of steps, the
-// distance to the curve. Distances are measured after every step, at the lattice point reached.
+// Circular arcs from the driver's mathematics, walked by the golden model. Checks the end point, the number of steps
+// and the distance to the curve. Distances are measured after every step, at the lattice point reached.
 #include "trammel/driver/arc.hpp"
 
 #include <fmt/format.h>
@@ -21,11 +21,11 @@
 namespace trammel::driver {
 namespace {
 
-// A real arc, and what rounding makes of it: start and end to whole pulses, the centre to 1/256.
+// An arc before and after rounding: start and end to whole pulses, the centre to 1/256 pulse.
 struct RandomArc {
   ArcGeometry geometry;
-  double radius;              // of the real arc
-  double real_x, real_y;      // its centre, from the rounded start
+  double radius;              // radius before rounding
+  double real_x, real_y;      // centre before rounding, from the rounded start
   double centre_x, centre_y;  // the rounded centre, from the rounded start
 };
 
@@ -36,7 +36,7 @@ RandomArc random_arc(std::mt19937_64& random, double smallest, double largest) {
   const double from = 2 * kPi * uniform(random);
   const bool clockwise = uniform(random) < 0.5;
   const double sweep = 2 * kPi * uniform(random);
-  const double x = uniform(random);  // the centre's place between lattice points
+  const double x = uniform(random);  // position of the centre between lattice points
   const double y = uniform(random);
   const double to = from + (clockwise ? -sweep : sweep);
   const double start_x = std::round(x + made.radius * std::cos(from));
@@ -55,7 +55,7 @@ RandomArc random_arc(std::mt19937_64& random, double smallest, double largest) {
   return made;
 }
 
-// Whole turns are told by divisions; here by angles, over radii down to the smallest.
+// The driver finds whole turns by divisions. This test finds them by angles, for radii down to the smallest.
 TEST(ArcTurns, AreTheNearestByAngles) {
   std::mt19937_64 random(7);
   int compared = 0;
@@ -105,7 +105,7 @@ void expect_random_arcs(std::uint64_t seed, int count, double smallest, double l
     try {
       arc = prepare(g, rule);
     } catch (const std::invalid_argument&) {
-      // Rounding left nothing to walk, or a circle smaller than a pulse.
+      // Rounding left an empty arc or a circle that is too small.
       ASSERT_TRUE((g.end_x == 0 && g.end_y == 0) || made.radius < 2.5) << "arc " << i;
       continue;
     }
@@ -129,8 +129,8 @@ void expect_random_arcs(std::uint64_t seed, int count, double smallest, double l
     });
     ASSERT_TRUE(ended) << "arc " << i << " of seed " << seed << ": radius " << made.radius << " sweep " << g.sweep;
     const double mean = (first + last) / 2;
-    // One pulse, and what a step to the side of a small circle adds; in 8 directions half of it, or what lies between
-    // the mean radius and the ends'.
+    // Bound: one pulse, plus the addition by a sideways step on a small circle. In 8 directions: half a pulse, or the
+    // difference between the mean radius and the radii of the ends.
     const bool eight = rule == StepRule::kEightDirections;
     ASSERT_LT(std::max(most - mean, mean - least), eight ? kMaxInEight : 1 + 0.3 / mean)
         << "arc " << i << " of seed " << seed;
@@ -152,7 +152,7 @@ TEST(ArcCommand, RandomArcsEndExactlyWithinTheirError) {
   EXPECT_LT(small.ring, 1.13);
   EXPECT_LT(large.ring, 1.1);
   EXPECT_LT(large.mean, 1.1);
-  // Rounding moves start and end by up to 0.71 pulse, and the circle through them with them.
+  // Rounding moves start and end by up to 0.71 pulse, and with them the circle.
   EXPECT_LT(large.real, 1.1 + 0.71);
 }
 
@@ -169,7 +169,7 @@ TEST(ArcInEightDirections, RandomArcsEndExactlyWithinTheirError) {
   EXPECT_LT(large.ring, 0.56);
 }
 
-// Lattice points about a whole-pulse centre that a circle of `r` pulses may be rounded to.
+// Lattice points to which points of a circle of `r` pulses about a whole-pulse centre may be rounded.
 std::vector<std::pair<int, int>> rounded_circle(int r) {
   std::vector<std::pair<int, int>> points;
   for (int x = -r - 1; x <= r + 1; ++x) {
@@ -180,14 +180,14 @@ std::vector<std::pair<int, int>> rounded_circle(int r) {
   return points;
 }
 
-// Farthest that a walk may be from the circle with the mean of start's and end's radius.
+// Largest distance that is allowed between a walk and the circle with the mean of start's and end's radius.
 double most_off(StepRule rule, double mean) {
   if (rule == StepRule::kFourDirections) return 1 + 1 / (4 * mean) + 1e-9;
   return mean < 2 ? 0.83 : kMaxInEight;
 }
 
-// About a whole-pulse centre; gives back how many arcs there were. Those below the least radius are refused, the others
-// end on the end point, near the circle, and never come near the centre.
+// Checks arcs about a whole-pulse centre, with 0 and 1 further turn, and returns their number. Arcs below the least
+// radius are refused. The others end exactly at the end point, stay near the circle and never come near the centre.
 std::uint64_t expect_small_arcs(StepRule rule, int r, std::pair<int, int> start, std::pair<int, int> end,
                                 bool clockwise) {
   const auto [sx, sy] = start;
@@ -205,7 +205,7 @@ std::uint64_t expect_small_arcs(StepRule rule, int r, std::pair<int, int> start,
     EXPECT_THROW(prepare(g, rule), std::invalid_argument);
     return 0;
   }
-  std::int64_t nearest = INT64_MAX;  // squares of pulses
+  std::int64_t nearest = INT64_MAX;  // squared distance to the centre, pulses^2
   std::int64_t farthest = 0;
   for (int more = 0; more < 2; ++more, ++g.turns) {
     EXPECT_TRUE(walk(prepare(g, rule),
@@ -221,8 +221,8 @@ std::uint64_t expect_small_arcs(StepRule rule, int r, std::pair<int, int> start,
   return 2;
 }
 
-// Every start and end on the rounded circles of 1 to 20 pulses, quarter starts among them, both directions, and the
-// same with a full turn more. In 8 directions up to 8 pulses.
+// Every start and end on the rounded circles of 1 to 20 pulses, including starts on an axis, in both directions, with
+// and without a further turn. In 8 directions up to 8 pulses (20 under TRAMMEL_LONG); on an emulated host up to 6.
 TEST(ArcCommand, EverySmallArcEndsExactlyAndNearItsCircle) {
   const bool all = std::getenv("TRAMMEL_LONG") != nullptr;
   for (const StepRule rule : {StepRule::kFourDirections, StepRule::kEightDirections}) {
@@ -241,7 +241,7 @@ TEST(ArcCommand, EverySmallArcEndsExactlyAndNearItsCircle) {
   }
 }
 
-// A semi-axis of 1 pulse likewise.
+// In 4 directions a semi-axis of 1 pulse is refused, like a circle below the least radius.
 TEST(ArcCommand, NarrowEllipsesInFourDirections) {
   EllipseGeometry g;
   g.semi_x = 1;
@@ -281,7 +281,7 @@ TEST(ArcCommand, FieldsOfGoldbergsCircle) {
   EXPECT_EQ(arc.prescale, (std::uint64_t{200} << 40) / 1000);
   EXPECT_EQ(arc.quadrants, 4);
   EXPECT_FALSE(arc.clockwise);
-  EXPECT_TRUE(arc.deviation == 65536 / 2);    // Table 3's 0, and the half that leaves its signs alone
+  EXPECT_TRUE(arc.deviation == 65536 / 2);    // Table 3's 0, plus one half, which does not change its signs
   EXPECT_TRUE(arc.gradient_x == 50 * 65536);  // Table 3's 50, in squares of 1/256 pulse
   EXPECT_TRUE(arc.gradient_y == 0);
   EXPECT_EQ(arc.half_x, 65536u);
@@ -294,7 +294,7 @@ TEST(ArcCommand, SweepTellsShortFromFull) {
   g.end_y = 1;
   g.sweep = 0.01;
   EXPECT_EQ(prepare(g).path_ticks, 1u);
-  g.sweep = 2 * kPi - 0.01;  // the end is rounded past the start: one turn and a step
+  g.sweep = 2 * kPi - 0.01;  // rounding puts the end past the start: one turn and a step
   EXPECT_EQ(prepare(g).quadrants, 4);
   g.end_y = -1;  // behind the start
   // The mean radius is a little over 100, so the walk may turn at 101 on each axis crossing.
@@ -321,8 +321,7 @@ TEST(ArcCommand, TurnsAdd) {
   EXPECT_THROW(prepare(g), std::invalid_argument);
 }
 
-// By either rule; in 8 directions the driver's own walk says how many steps there are, and the model's comes to the end
-// with them.
+// In 8 directions the driver counts the steps by its own walk. The model must reach the end with exactly this number.
 TEST(ArcInEightDirections, SmallArcsAndTurnsEndExactly) {
   std::mt19937_64 random(31);
   for (int i = 0; i < some_of(20000); ++i) {
@@ -345,7 +344,7 @@ TEST(ArcInEightDirections, FullCirclesHaveTheirSteps) {
     EXPECT_EQ(prepare(full_circle(r, false), StepRule::kEightDirections).path_ticks, steps) << r;
     EXPECT_EQ(prepare(full_circle(r, true), StepRule::kEightDirections).path_ticks, steps) << r;
   }
-  // Turns that repeat are not walked: this many would take hours.
+  // The driver does not walk repeated turns: this many would take hours.
   ArcGeometry g = full_circle(1'000'000, false);
   g.turns = 16382;
   const ArcCommand arc = prepare(g, StepRule::kEightDirections);
@@ -353,14 +352,14 @@ TEST(ArcInEightDirections, FullCirclesHaveTheirSteps) {
   EXPECT_EQ(arc.path_ticks, std::uint64_t{4} * 1'414'214 * 16383);
 }
 
-// At the bounds: a quarter of a circle whose centre is 2^24 pulses away and on no whole pulse. The end is exact, the
-// circle is kept within its error.
+// At the bounds: a quarter of a circle whose centre is 2^24 pulses away and not on a whole pulse. The end is exact, and
+// the walk stays within its error of the circle.
 TEST(ArcBounds, LargestCircle) {
   if (kFewCases) GTEST_SKIP() << "too long for an emulated host";
   constexpr double kRadius = 0x1p24;
   for (const StepRule rule : {StepRule::kFourDirections, StepRule::kEightDirections}) {
     ArcGeometry g;
-    g.centre_x = -kMaxCentreDistance + 77;  // 77/256 pulses to the right
+    g.centre_x = -kMaxCentreDistance + 77;  // 77/256 pulses right of the bound
     g.centre_y = 129;
     g.end_x = static_cast<std::int32_t>(std::lround(-kRadius + 77.0 / 256));
     g.end_y = static_cast<std::int32_t>(std::lround(kRadius + 129.0 / 256)) - 1;
@@ -372,7 +371,7 @@ TEST(ArcBounds, LargestCircle) {
     double worst = 0;
     std::uint64_t steps = 0;
     EXPECT_TRUE(walk(prepare(g, rule), [&](std::int64_t x, std::int64_t y) {
-      // One in a thousand, of doubles with 2^-29 to spare.
+      // One step in 1009; doubles resolve these distances to about 2^-29.
       if (++steps % 1009 != 0) return;
       const double r = std::hypot(static_cast<double>(x) - cx, static_cast<double>(y) - cy);
       worst = std::max({worst, r - std::max(first, last), std::min(first, last) - r});
@@ -434,7 +433,7 @@ TEST(ArcCommand, RefusesWhatTheCardCannotDo) {
   EXPECT_THAT(refusal(g), HasSubstr("2^40"));
 }
 
-// Far from every circle, but a place to end at: the centre has no direction of its own.
+// The centre is far from the circle and has no direction, but an arc can end there.
 TEST(ArcCommand, AnEndAtTheCentreIsReached) {
   ArcGeometry g = full_circle(10, false);
   g.end_x = static_cast<std::int32_t>(g.centre_x / kCentreUnitsPerPulse);

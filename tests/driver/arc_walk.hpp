@@ -35,8 +35,8 @@ inline DeviationPath path_of(const ArcCommand& arc) {
   return path;
 }
 
-// Walks the arc and shows `visit(x, y)` every point after a step, relative to the start. Expects the end point after
-// exactly L steps, and not before.
+// Walks the arc and calls `visit(x, y)` after every step, with the point relative to the start. Returns true if the
+// walk reaches the end point after exactly L steps and not before.
 template <class Visit>
 bool walk(const ArcCommand& arc, Visit&& visit) {
   DeviationPath path = path_of(arc);
@@ -58,7 +58,7 @@ inline double sweep_between(double from, double to, bool clockwise) {
   return sweep < 0 ? sweep + 2 * kPi : sweep;
 }
 
-// A 32-bit host of the tests is emulated: it gets a share of the cases.
+// A 32-bit host of the tests is emulated, so it runs one case in 50.
 inline constexpr bool kFewCases = sizeof(void*) < 8;
 constexpr int some_of(int count) { return kFewCases ? std::max(1, count / 50) : count; }
 

@@ -1,4 +1,4 @@
-// The example transport of docs/reference/bus.md, on a file in place of a card's window.
+// The example transport of docs/reference/bus.md, with a file in place of a card's window.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -43,7 +43,7 @@ TEST_F(BusPage, OpensAndWrites) {
   std::array<Access, 1> ratio{read_of(reg::kRatioFeed)};
   bus.transfer(ratio.data(), 1);
   EXPECT_EQ(ratio[0].data, 0x8000U);
-  // What a card latches is found behind each write.
+  // The driver finds a refusal that the card has latched.
   std::array<Access, 1> refusal{write_of(reg::kRefusal, reg::kHold << 16 | 8U)};
   MemoryBus second(path_);
   start_line(card, {1}, std::chrono::seconds(1));

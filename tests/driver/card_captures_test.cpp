@@ -1,4 +1,5 @@
-// Captures through the driver: what it writes, what it reads of an edge behind a filter, and what it refuses before.
+// Captures through the driver: its writes, its results for an edge at an input with a filter, and its refusals before
+// any write.
 #include <gmock/gmock.h>
 
 #include "error_message.hpp"
@@ -15,7 +16,7 @@ namespace reg = card_map::reg;
 
 class CardCaptures : public ::testing::Test {
  protected:
-  // 640 clocks and what a scan and the snapshot take.
+  // Sets a filter of 640 clocks; later waits also cover a scan and the snapshot.
   void SetUp() override {
     card_.set_input_filter(3, 640us);
     engine_->wait(3000);
@@ -59,7 +60,7 @@ TEST_F(CardCaptures, AGlitchGivesNoneAndWaitingEnds) {
   EXPECT_EQ(card_.read_captures().snapshots, 1U);
   EXPECT_FALSE(card_.read_captures().units[0].pending);
   EXPECT_THROW(card_.wait_for_capture(0, 10ms), TimeoutError);
-  // Both ways; the second edge comes while the first capture stands.
+  // Both directions; the second edge comes before the first capture is taken.
   stand(8, 2000);
   EXPECT_TRUE(card_.read_captures().units[0].valid);
   stand(0, 2000);
@@ -78,15 +79,15 @@ TEST_F(CardCaptures, AGlitchGivesNoneAndWaitingEnds) {
   EXPECT_FALSE(card_.read_captures().units[0].valid);
 }
 
-// Edges of two units in the order in which their filters pass, with the time of each edge.
+// Edges of two units, in the order in which the filters pass them, each with the time of the edge itself.
 TEST_F(CardCaptures, AQueueKeepsEachEdge) {
   ASSERT_TRUE(card_.has_capture_queue());
   card_.select_capture(1, {3, true, true, true, true});
-  card_.select_capture(2, {5, true, true, true, true});  // without a filter
+  card_.select_capture(2, {5, true, true, true, true});  // input 5 has no filter
   EXPECT_EQ(engine_->read(reg::capture_select(1)), 0xF03U);
   EXPECT_TRUE(card_.take_queued_captures().empty());
   const std::uint64_t from = engine_->cycles();
-  stand(0x08, 100);  // passes after the next
+  stand(0x08, 100);  // the filter passes this edge after the next one
   stand(0x28, 2000);
   stand(0x20, 2000);
   stand(0x00, 2000);
@@ -122,13 +123,13 @@ TEST_F(CardCaptures, AFullQueueKeepsTheOldestAndCounts) {
   ASSERT_EQ(captures.size(), 16U);
   EXPECT_TRUE(captures[0].active);
   for (std::size_t n = 1; n < 16; ++n) EXPECT_EQ(captures[n].at.time - captures[n - 1].at.time, 100U) << n;
-  // It goes round.
+  // The queue wraps around.
   for (unsigned n = 1; n <= 15; ++n) stand(n % 2 * 0x20, 100);
   EXPECT_EQ(card_.take_queued_captures().size(), 15U);
   EXPECT_EQ(card_.read_capture_queue().lost, 4U);
 }
 
-// Without a filter, in the clocks in which the snapshot of the edge before is written.
+// The input has no filter, so an edge can come while the snapshot of the edge before is still written.
 TEST_F(CardCaptures, AnEdgeThatComesTooFastIsTold) {
   card_.select_capture(0, {5, true, true, true, true});
   stand(0x20, 5);

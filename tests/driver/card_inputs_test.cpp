@@ -1,4 +1,4 @@
-// Filters, roles and stops of the card's inputs: what the driver writes, how it rounds, and what it refuses before.
+// Filters, roles and stops of the card's inputs: writes of the driver, its rounding, and its refusals before any write.
 #include <gmock/gmock.h>
 
 #include "error_message.hpp"
@@ -68,7 +68,7 @@ TEST_F(CardInputsOnModel, WhatIsWrittenReadsBack) {
   EXPECT_EQ(engine_->read(reg::role(35)), 0U) << "no input has it";
 }
 
-// On a limit that is active now; it stops nothing then, until it is released.
+// The override applies to a limit that is active. This limit then stops nothing until it is released.
 TEST_F(CardInputsOnModel, AnOverrideIsOfOneEnd) {
   card_.set_role({AxisRole::kLimitMinus, 1}, 4);
   card_.set_role({AxisRole::kLimitPlus, 1}, 8);
@@ -93,7 +93,7 @@ TEST(CardInputs, RolesHaveNames) {
   EXPECT_EQ(role_name(static_cast<CardRole>(53)), "role 53");
 }
 
-// LIMIT_STATE is not there to be read.
+// This card has no LIMIT_STATE, so it must not be read.
 TEST(CardInputs, FaultsOfACardWithoutThemHaveATextToo) {
   RegisterStub bus;
   Card card = Card::open(bus);
@@ -115,7 +115,7 @@ TEST_F(CardInputsOnModel, RolesFollowTheirInputs) {
   engine_->wait(200);
   EXPECT_EQ(card_.read_roles().limit_minus, 0);
   EXPECT_TRUE(card_.read_roles().feed_hold);
-  // The card's others, each by itself.
+  // Other roles of the card, one at a time.
   card_.set_role(CardRole::kCycleStart, 0x10);
   card_.set_role(CardRole::kToolSetter, 0x20);
   card_.set_role(CardRole::kProbe, 0x40);

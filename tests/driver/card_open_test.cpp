@@ -1,4 +1,4 @@
-// What the driver asks of a card before it takes it for one, and what it refuses.
+// The driver's checks of a card's identification, and its refusals.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ struct Malformed {
   const char* message;
 };
 
-// The second word of a descriptor: stride and words used, base as a byte address; on no load bus.
+// The second word of a descriptor: stride and words used, base as a byte address; the unit is not on the load bus.
 constexpr std::uint32_t range_of(std::uint32_t stride, std::uint32_t words, std::uint32_t base) {
   return 31U << 25 | stride << 18 | words << 10 | base / 4;
 }
@@ -107,7 +107,7 @@ RegisterStub malformed(const Malformed& card) {
   return bus;
 }
 
-// A stub at the other end of frames.
+// A link that carries frames to a stub.
 class StubLink final : public ByteLink {
  public:
   explicit StubLink(RegisterStub& stub)
@@ -166,8 +166,7 @@ const Malformed kMalformed[] = {
     {"EndlessFeed", reg::kFeedDepth, 0xFFFFFFFF, "FEED_DEPTH: 4294967295 halfwords"},
     {"StepTimes", reg::step_length(3), 0x10000, "STEP_LENGTH reads 0x00010000"},
     {"StepSpaces", reg::step_space(0), 0x20000, "STEP_SPACE reads 0x00020000"},
-    // Units: time_base is described by words 0 and 1, axes by 8 and 9, host_ports, which has no registers, by 12
-    // and 13.
+    // Units: words 0 and 1 describe time_base, words 8 and 9 axes, words 12 and 13 host_ports, which has no registers.
     {"NewerUnit", reg::descriptor(8), 0x00'04'20'05, "unit axes: version 2.0, this driver takes version 1"},
     {"OlderUnit", reg::descriptor(8), 0x00'04'0F'05, "unit axes: version 0.15, this driver takes version 1"},
     {"OtherAxes", reg::descriptor(8), 0x00'03'10'05, "unit axes: 3 instances, but AXES reads 4"},
@@ -185,7 +184,7 @@ const Malformed kMalformed[] = {
     {"NoInstance", reg::descriptor(12), 0x00'00'10'07, "unit host_ports: 0 instances"},
     {"NoTimeBase", reg::descriptor(0), 0x00'01'10'C8, "no unit time_base, which every card has"},
     {"EndsBeforeAxes", reg::descriptor(8), 0, "no unit axes, which every card has"},
-    // An identification that ends early.
+    // The card refuses reads of its identification from some register on.
     {"EndsAtMagic", reg::kMagic, std::nullopt, "the read of 0x000 was refused"},
     {"EndsAtMapVersion", reg::kMapVersion, std::nullopt, "the read of 0x004 was refused"},
     {"EndsAtClock", reg::kClockHz, std::nullopt, "the read of 0x00C was refused"},
@@ -207,8 +206,8 @@ TEST(MalformedCards, HaveMessagesOfTheirOwn) {
   EXPECT_EQ(messages.count(""), 0U);
 }
 
-// What a later card of the same major version may have: a unit of its own, a higher minor version and a further feature
-// of a unit, a unit with more words.
+// A later card of the same major version may have a unit that this driver does not know, a unit with a higher minor
+// version and a further feature, and a unit with more words.
 TEST(CardOpen, TakesUnitsAndFeaturesThatItDoesNotKnow) {
   RegisterStub bus;
   const Identification now = Card::open(bus).identification();
@@ -232,7 +231,7 @@ TEST(CardOpen, RefusesATableWithoutEnd) {
   EXPECT_THAT(message_of(bus), HasSubstr("its table of units does not end within 32 descriptors"));
 }
 
-// A word for a register of the identification: mostly what a card has there, else one near it, or nonsense.
+// A word for a register of the identification: in half of the cases the usual word, else one near it or a random one.
 std::uint32_t word_for(std::uint32_t usual, std::mt19937_64& random) {
   switch (random() % 8) {
     case 0:
@@ -248,7 +247,7 @@ std::uint32_t word_for(std::uint32_t usual, std::mt19937_64& random) {
   }
 }
 
-// What a program does first with a card that was taken for one.
+// The first calls of a program on an opened card.
 void use(Card& card) {
   const Identification& is = card.identification();
   EXPECT_TRUE(is.axes >= 1 && is.axes <= card_map::kMaxAxes && is.clock_hz != 0);
@@ -268,7 +267,8 @@ bool names_a_register(const std::string& text) {
                      [&](const auto& entry) { return text.find(std::string(entry.name)) != std::string::npos; });
 }
 
-// Whatever a bus answers: a card within its bounds, or an error of the driver's that names the register or the unit.
+// For any answers of the bus, open() returns a card within its bounds, or throws an error that names the register or
+// the unit.
 TEST(CardOpen, NonsenseIsATypedErrorOrACard) {
   constexpr std::uint64_t kSeed = 20;
   std::mt19937_64 random(kSeed);
@@ -282,7 +282,7 @@ TEST(CardOpen, NonsenseIsATypedErrorOrACard) {
          {reg::kMapVersion, reg::kCommandsVersion, reg::kAxes, reg::kClockHz, reg::descriptor(8), reg::descriptor(9),
           reg::kGeometryDepth, reg::kFeedDepth, reg::kBuildId, reg::kBuildFlags, reg::kBoardId, reg::kPorts,
           reg::step_length(0), reg::step_space(3)}) {
-      // All of them nonsense at once is found at the first: so one or two.
+      // Only a few registers change, because open() reports the first bad one and would not reach the others.
       if (random() % 6 == 0) bus.values[address] = word_for(bus.values[address], random);
     }
     try {

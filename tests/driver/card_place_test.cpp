@@ -1,5 +1,5 @@
-// The machine's place: what the driver reads and writes, what it refuses before it does, and, on the model, what the
-// place outlives and what it is lost by.
+// The machine's place: reads and writes of the driver, and its refusals before any write. On the model: events that the
+// place survives, and events that lose it.
 #include "trammel/driver/card_place.hpp"
 
 #include <gmock/gmock.h>
@@ -79,7 +79,7 @@ TEST(CardPlace, AnOlderMapHasNone) {
   EXPECT_TRUE(bus.log.empty());
 }
 
-// A card of two axes on which axis 0 moves for a second and axis 1 stands.
+// The message of a StateError of `call`.
 std::string state_error(const std::function<void()>& call) {
   try {
     call();
@@ -89,6 +89,7 @@ std::string state_error(const std::function<void()>& call) {
   return "no error";
 }
 
+// A card of two axes. begin_line() moves axis 0 for a second; axis 1 is at rest.
 class PlaceOnModel : public ::testing::Test {
  protected:
   PlaceOnModel() : card_(Card::open(*engine_)) {
@@ -165,7 +166,7 @@ TEST_F(PlaceOnModel, AProgramBeginsWhereTheOneBeforeHasEnded) {
 TEST_F(PlaceOnModel, TheFirstProgramSetsMachineZeroWhereTheCardStands) {
   begin_line();
   const std::int32_t at = card_.stop().position[0];
-  card_.set_scales(kNoScales);  // as after a reset, but for where it stands
+  card_.set_scales(kNoScales);  // as after a reset, except for the position
   card_.set_place(3, false, false);
   EXPECT_EQ(read_card_place(card_).pulses()[0], 0);
   const PlaceBegin begin = begin_at_place(card_, 1);
@@ -180,7 +181,7 @@ TEST_F(PlaceOnModel, TheFirstProgramSetsMachineZeroWhereTheCardStands) {
 TEST_F(PlaceOnModel, ALostPlaceIsRefusedUnlessItIsTrusted) {
   begin_line();
   card_.abort();
-  engine_->sleep(1ms);  // the last pulse
+  engine_->sleep(1ms);  // until the last pulse has ended
   EXPECT_THAT(state_error([&] { begin_at_place(card_, 3); }), HasSubstr("that of axis 0 was lost"));
   EXPECT_EQ(card_.read_place().valid, 2) << "nothing was written";
   EXPECT_EQ(begin_at_place(card_, 2).place.bits.valid, 2) << "of the other axis";
@@ -190,7 +191,7 @@ TEST_F(PlaceOnModel, ALostPlaceIsRefusedUnlessItIsTrusted) {
   EXPECT_THAT(state_error([&] { begin_at_place(card_, 3); }), HasSubstr("that of axis 0, 1 was lost"));
 }
 
-// In pulses already: they are not written anew.
+// Scales that are already in pulses are not written again.
 TEST(CardPlace, ScalesThatStandStay) {
   RegisterStub bus(2);
   bus.values[reg::kPlace] = 3;

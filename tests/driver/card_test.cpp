@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// A card on a stub that has forgotten how it was opened.
+// A card on a stub, whose log does not contain the opening.
 class CardTest : public ::testing::Test {
  protected:
   CardTest() : card_(Card::open(bus_)) { bus_.forget(); }
@@ -91,7 +91,7 @@ TEST_F(CardTest, EachClassHasItsRatio) {
   EXPECT_THAT(argument_error([&] { Card::ratio_of(1, 0); }), HasSubstr("override"));
 }
 
-// Every step of half a percent is one of its own, from 0 to the largest override.
+// Each step of 0.5 % from 0 to the largest override has a different ratio.
 TEST(Override, IsFineEnough) {
   std::uint32_t before = 0;
   for (int half = 1; half <= 400; ++half) {
@@ -152,7 +152,7 @@ TEST_F(CardTest, ASnapshotThatNeverComesTimesOut) {
 }
 
 TEST_F(CardTest, WaitingEndsWithTheMotionTheFaultOrTheTimeout) {
-  bus_.values[reg::kSlew] = 0xFFFFFFF;  // 8 clocks
+  bus_.values[reg::kSlew] = 0xFFFFFFF;  // a slew of 8 clocks
   bus_.values[reg::kStatus] = field::kStatusBusy;
   EXPECT_THROW(card_.wait_until_idle(100us), TimeoutError);
   EXPECT_THAT(bus_.sleeps, ElementsAre(64us, 36us, 8us)) << "and two slews, down and up";
@@ -186,7 +186,7 @@ TEST_F(CardTest, AHoldStopsTheTimeOutAndARatioStretchesIt) {
   EXPECT_GE(bus_.slept, 50 * 64us + 4ms);
   EXPECT_LE(bus_.slept, 50 * 64us + 4ms + 100us);
   bus_.forget();
-  bus_.values[reg::kRatioFeed] = Card::kFullRatio / 8;  // by somebody else: seen once the time has passed
+  bus_.values[reg::kRatioFeed] = Card::kFullRatio / 8;  // set by another program: noticed when the time has passed
   EXPECT_THROW(card_.wait_until_idle(1ms), TimeoutError);
   EXPECT_GE(bus_.slept, 8ms);
   EXPECT_LE(bus_.slept, 12ms + 100us);
@@ -245,7 +245,7 @@ TEST(CardOnModel, AFaultLatchesWhereTheCardStood) {
   slow.step_length = 50us;
   card.configure_axis(0, slow);
   card.set_longest_step_wait(10us);
-  // Steps come every 10 clocks: the card's limit is known and this plan ignores it.
+  // One step every 10 clocks: the card's limit is known, but this plan ignores it.
   CardTiming deceived = card.timing();
   deceived.pulse_period.fill(1);
   start_line(card, plan_line_clocks(deceived, {100}, 1000).part(0));
@@ -270,7 +270,7 @@ TEST_F(CardTest, ALinkThatIsGoneKeepsTheTransportsMessage) {
   card_.set_hold(true);
 }
 
-// All ones is what a bus without a card gives; zeros look like a card that is idle.
+// A bus without a card reads as all ones. Zeros look like an idle card.
 TEST_F(CardTest, NonsenseIsALinkError) {
   bus_.values[reg::kStatus] = 0xFFFFFFFF;
   EXPECT_THROW(card_.read_status(), LinkError);
@@ -329,7 +329,7 @@ TEST(CardOnModel, AnotherThreadsRequestsAreServedByTheCallThatWaits) {
   EXPECT_LT(engine->positions()[0], 10);
 }
 
-// A line that stays raised for another reason neither makes the wait spin nor keeps its time from passing.
+// An interrupt line that stays raised for another reason must not make the wait spin, and must not stop its time-out.
 TEST(CardInterrupts, ARaisedLineTakesTurnsWithSleeping) {
   class Raised final : public RegisterStub {
    public:

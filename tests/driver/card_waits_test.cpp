@@ -1,4 +1,4 @@
-// Calls of the card that wait: time-outs, interrupts and requests from elsewhere, and cards of older maps.
+// Calls of the card that wait: time-outs, interrupts, requests from other threads, and cards with older maps.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -37,7 +37,7 @@ class CardWaits : public ::testing::Test {
     bus_.forget();
     return card;
   }
-  // Each access takes longer than the pause between two looks at the check of an InterruptScope.
+  // Each access takes at least kInterruptSlice, the time between two calls of an InterruptScope's check.
   void be_slow() {
     bus_.on_access = [](const Access&) {
       std::this_thread::sleep_for(kInterruptSlice);
@@ -74,7 +74,7 @@ TEST_F(CardWaits, SafeOutputsAtTheCauseNeedTheirMap) {
 
 TEST_F(CardWaits, AStopThatNeverComesToRestTimesOut) {
   Card card = open();
-  bus_.values[reg::kSlew] = 1U << 20;  // 1,024 clocks
+  bus_.values[reg::kSlew] = 1U << 20;  // a slew of 1,024 clocks
   bus_.values[reg::kStatus] = field::kStatusBusy;
   EXPECT_THAT(message_of<TimeoutError>([&] { card.stop(2ms); }), HasSubstr("stop on the path: not within"));
   EXPECT_GE(bus_.slept, 3ms);
@@ -92,7 +92,7 @@ TEST_F(CardWaits, AStopIsInterruptedWhereItHolds) {
   EXPECT_EQ(bus_.values[reg::kHold], 1U);
 }
 
-// The rest is exact from `settled` on; a card without it is taken as it holds.
+// The position at rest is exact once `settled` is set. A card without this bit counts as at rest once it is held.
 TEST_F(CardWaits, AStopWaitsUntilTheCardIsSettled) {
   constexpr std::uint32_t kHeld = field::kStatusBusy | field::kStatusHeld;
   const auto pauses_of = [this](std::uint32_t map_minor) {
@@ -103,7 +103,7 @@ TEST_F(CardWaits, AStopWaitsUntilTheCardIsSettled) {
     return bus_.sleeps.size();
   };
   EXPECT_EQ(pauses_of(4), 2U);
-  // The second wait, after the abort, sees the next status.
+  // The wait after the abort reads the second status.
   EXPECT_EQ(pauses_of(3), 1U);
 }
 
@@ -123,14 +123,14 @@ TEST_F(CardWaits, ACardWithoutCapturesSaysSo) {
   EXPECT_TRUE(bus_.log.empty());
 }
 
-// The identity is looked at when the card is idle.
+// The wait checks the identification when the card is idle.
 TEST_F(CardWaits, ACardThatRefusesItsMagicIsGone) {
   Card card = open();
   bus_.on_access = [](const Access& access) { return access.address != reg::kMagic; };
   EXPECT_THAT(message_of<LinkError>([&] { card.wait_until_idle(1s); }), HasSubstr("it does not answer any more"));
 }
 
-// A ratio of 0 is a hold: the slowest of the others stretches the time.
+// A class with a ratio of 0 is held and does not count. The slowest of the other classes stretches the time.
 TEST_F(CardWaits, AClassThatStandsDoesNotCountForTheTime) {
   bus_.add_engines(card_map::engines::kClasses);
   bus_.values[reg::kRatioRapid] = bus_.values[reg::kRatioFixed] = Card::kFullRatio;
@@ -153,7 +153,7 @@ TEST_F(CardWaits, AHoldOfThisProgramIsWaitedOut) {
   EXPECT_EQ(bus_.sleeps.size(), 20U) << "longer than the time that was allowed";
 }
 
-// Somebody else has set it since this program has ended its own.
+// Another program has set the hold after this program ended its own.
 TEST_F(CardWaits, AHoldIsNotThisProgramsThatHasEndedItsOwn) {
   Card card = open();
   card.set_hold(true);
@@ -172,7 +172,7 @@ TEST_F(CardWaits, AFourthClassHasNoRatio) {
   EXPECT_TRUE(bus_.log.empty());
 }
 
-// Held, but on its ramp yet.
+// HOLD is set, but the time base is still slewing to 0.
 TEST(CardTakeOver, OfACardThatIsComingToRest) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -213,7 +213,7 @@ TEST(CardRequests, AStopFromElsewhereEndsTheWait) {
 
 TEST_F(CardWaits, ARatioThatTheCardCannotHaveIsLeftOut) {
   Card card = open();
-  card.request_ratio(PieceClass::kRapid, 0x4000);  // a card without classes
+  card.request_ratio(PieceClass::kRapid, 0x4000);  // this card has no classes
   card.request_ratio(PieceClass::kFeed, Card::kFullRatio + 1);
   serve_requests(card);
   EXPECT_TRUE(bus_.log.empty());
@@ -222,7 +222,7 @@ TEST_F(CardWaits, ARatioThatTheCardCannotHaveIsLeftOut) {
   EXPECT_THAT(bus_.log, ::testing::ElementsAre(wrote(reg::kRatioFeed, 0x4000)));
 }
 
-// A link that dies leaves the card to its watchdog; nothing is thrown from the scope's end.
+// If the link fails, the watchdog of the card stays on. The destructor of the scope does not throw.
 TEST_F(CardWaits, AWatchdogScopeEndsWithoutTheLinkToo) {
   Card card = open();
   {

@@ -22,7 +22,7 @@ std::vector<std::uint32_t> words_of(const Command& command, std::uint8_t number 
   return words;
 }
 
-// The message of the ArgumentError, empty if there is none; nothing may have been appended.
+// The message of the ArgumentError; empty if there is none. A refused command must not append anything.
 std::string refusal_of(const Command& command) {
   std::vector<std::uint32_t> words{42};
   try {
@@ -73,7 +73,7 @@ TEST(Commands, ALineIsLaidOutAsTheLayoutPageSays) {
   LineCommand line;
   line.ticks = 0x0123456789;
   line.mask = 0b0101;
-  line.increment[0] = 0x10000000000;  // 2^40, one pulse a tick
+  line.increment[0] = 0x10000000000;  // 2^40, one pulse per tick
   line.increment[2] = -2;
   // Halfwords: 0501 0706 | 6789 2345 | 0001 0000 | 0000 0100 | FFFE FFFF | FFFF and padding.
   EXPECT_THAT(words_of(line, 7),
@@ -182,7 +182,8 @@ TEST(Commands, SoIsItsSilence) {
   EXPECT_EQ(read.piece_class, PieceClass::kRapid);
 }
 
-// Not the longest that this driver has, but that of the card's layouts: a later command still fits.
+// The constant is the limit of the card's layouts, not the length of this driver's longest command. Later commands
+// still fit.
 TEST(Commands, NoCommandIsLongerThanTheConstant) {
   EXPECT_EQ(kMaxCommandWords, 26U);
   ArcCommand arc = some_arc();
@@ -266,7 +267,7 @@ TEST(Commands, LimitsOfAnArcInChordsAreKept) {
   EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[3] = kMax + 1; }), HasSubstr("increment"));
 }
 
-// Words whose mask and plane contradict each other hold fewer increments than their mask says.
+// If mask and plane contradict each other, the words hold fewer increments than the mask says.
 TEST(Commands, AnArcInChordsWithoutItsPlaneIsNotDecoded) {
   ArcChordCommand arc = some_arc_chord();
   arc.mask = 0b0101;
@@ -301,7 +302,7 @@ TEST(Commands, LimitsOfPulsesOnOutputsAreKept) {
   EXPECT_EQ(refusal_of(PwmCommand{0, 1, true, 32, 1}), "PWM: shift 32");
 }
 
-// The card counts paths, pieces and barriers, not what takes no time.
+// The card counts paths, pieces and barriers, but not commands that take no time.
 TEST(Commands, WhatTakesNoTimeNeverCountsAsBegun) {
   for (const Command& command : std::vector<Command>{LineCommand{}, ArcCommand{}, FeedCommand{}, DwellCommand{},
                                                      EndCommand{}, WaitInputCommand{}, ProbeEndCommand{}}) {

@@ -1,5 +1,5 @@
-// Outputs that serve the drives and the card, safe levels, and the emergency stop: what the driver writes, how it
-// rounds, and what it refuses before.
+// Outputs for the drives and the card, safe levels, and the emergency stop: writes of the driver, its rounding, and its
+// refusals before any write.
 #include "trammel/driver/drives.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// A card at 1 MHz: delays of 4.096 ms, idle times of 1.05 s.
+// A card at 1 MHz: the unit of delays is 4.096 ms, the unit of idle times 1.05 s.
 class Drives : public ::testing::Test {
  protected:
   std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine({});

@@ -1,5 +1,5 @@
-// Arcs of ellipses from the driver's mathematics, walked by the golden model: the end point, the number of steps, the
-// distance to the curve after every step.
+// Arcs of ellipses from the driver's mathematics, walked by the golden model. Checks the end point, the number of steps
+// and the distance to the curve after every step.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ double distance_to_ellipse(double a, double b, double x, double y) {
   double high = kPi / 2;
   for (int i = 0; i < 40; ++i) {
     const double t = (low + high) / 2;
-    // Derivative of the squared distance; one sign change when the point is near the curve of a rounded ellipse.
+    // Half the derivative of the squared distance. Its sign changes once if the point is near the curve and the ellipse
+    // is not too flat.
     const double slope = -a * std::sin(t) * (a * std::cos(t) - x) + b * std::cos(t) * (b * std::sin(t) - y);
     (slope < 0 ? low : high) = t;
   }
@@ -68,7 +69,7 @@ TEST(Ellipse, ArcsEndExactlyWithinTheirError) {
   EXPECT_LT(worst, 1.1);
 }
 
-// Needles and semi-axes up to the bound: the end and the count hold whatever the shape.
+// Ellipses of any shape, including very flat ones, and semi-axes at the bound: end and number of steps are exact.
 TEST(Ellipse, EveryShapeEndsExactly) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -94,7 +95,7 @@ TEST(Ellipse, FullTurnReturns) {
     for (const bool clockwise : {false, true}) {
       g.clockwise = clockwise;
       const ArcCommand arc = make_ellipse(g, 1 << 20);
-      // A needle's tip, narrower than a pulse, is cut short.
+      // The walk cuts off the tip of a flat ellipse where it is narrower than a pulse.
       EXPECT_GE(arc.path_ticks, static_cast<std::uint64_t>(3 * (a + b)));
       EXPECT_LE(arc.path_ticks, static_cast<std::uint64_t>(4 * (a + b) + 4));
       EXPECT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {})) << a << ' ' << b;
@@ -116,7 +117,7 @@ TEST(ArcInEightDirections, EllipsesOfEveryShapeEndExactly) {
   }
 }
 
-// At the bound, semi-axes of 2^20: the end is exact, F and the gradients keep to 66 bits.
+// At the bound, semi-axes of 2^20: the end is exact, and F and the gradients fit in 66 bits.
 TEST(ArcBounds, LargestEllipse) {
   for (const StepRule rule : {StepRule::kFourDirections, StepRule::kEightDirections}) {
     EllipseGeometry g;
@@ -159,13 +160,13 @@ TEST(Ellipse, RefusesWhatTheCardCannotDo) {
   g.semi_y = kMaxSemiAxis + 1;
   EXPECT_THROW(prepare(g), std::invalid_argument);
   g.semi_y = 5;
-  g.start_x = 3;  // well inside
+  g.start_x = 3;  // far inside the ellipse
   EXPECT_THROW(prepare(g), std::invalid_argument);
   g.start_x = INT64_MAX;
   EXPECT_THROW(prepare(g), std::invalid_argument);
 }
 
-// Of an arc about an ellipse of 10 and 5 from its right end, with one thing changed.
+// The refusal of an arc on an ellipse with semi-axes 10 and 5 from its right end, after one change.
 template <class Change>
 std::string ellipse_refusal(Change change) {
   EllipseGeometry g;
@@ -196,7 +197,7 @@ TEST(Ellipse, RefusalsNameWhatIsWrong) {
             "arc: semi-axes 1 and 5 are not within 2 .. 2^20 pulses, in 4 directions");
   EXPECT_EQ(refusal([](EllipseGeometry& g) { g.semi_x = kMaxSemiAxis + 1; }),
             "arc: semi-axes 1048577 and 5 are not within 2 .. 2^20 pulses, in 4 directions");
-  // A pulse outside the box may be rounding's, two are not.
+  // Rounding may put the start 1 pulse outside the box, but not 2 pulses.
   for (const std::int64_t x : {-12, 12})
     EXPECT_EQ(refusal([x](EllipseGeometry& g) { g.start_x = x; }),
               "arc: the start is outside the ellipse's bounding box");

@@ -1,4 +1,4 @@
-// What a call says of its failure, for tests.
+// The error message of a call, for tests.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace trammel::driver {
 
-// The message of the ErrorType that it throws; empty when it throws nothing. Other exceptions pass through.
+// The message of the ErrorType that `call` throws; empty if it throws nothing. Other exceptions pass through.
 template <typename ErrorType, typename Call>
 std::string message_of(Call call) {
   try {

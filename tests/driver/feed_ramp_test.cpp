@@ -1,4 +1,4 @@
-// Pieces from speeds, on the golden model: the time of every tick against the closed form; what is refused.
+// Feed pieces from speeds, on the golden model: the time of every tick against the closed form, and refusals.
 #include "trammel/driver/feed_ramp.hpp"
 
 #include <gtest/gtest.h>
@@ -22,19 +22,19 @@ constexpr std::uint32_t kRampHz = 1'000'000;
 
 FeedRamp ramp_of(std::uint64_t ticks, double speed, double end_speed) { return {ticks, speed, end_speed, 0, 0ns}; }
 
-// Clocks from the begin of the ramp to its distance of `ticks`, by v^2 = v0^2 + 2 a s.
+// Clocks from the beginning of the ramp to a distance of `ticks`, by v^2 = v0^2 + 2 a s.
 double clocks_to(const FeedRamp& ramp, double ticks) {
   const double a = (ramp.end_speed * ramp.end_speed - ramp.speed * ramp.speed) / (2 * static_cast<double>(ramp.ticks));
   const double speed = std::sqrt(std::max(0.0, ramp.speed * ramp.speed + 2 * a * ticks));
   return 2 * ticks / (ramp.speed + speed) * kRampHz;
 }
 
-// Clocks of a tick at the speed of half a tick before rest.
+// Clocks per tick at the speed that the ramp has half a tick before rest.
 double tick_at_rest(const FeedRamp& ramp) {
   return kRampHz / ramp.speed * std::sqrt(2 * static_cast<double>(ramp.ticks));
 }
 
-// Clocks in which the ticks of the pieces come: a line with a pulse per tick shows each of them.
+// The clock of each tick of the pieces. A line with one pulse per tick makes the ticks visible.
 std::vector<std::uint64_t> ticks_of(const std::vector<FeedRamp>& ramps) {
   const auto engine = sim::make_model_engine({});
   test::Steps steps;
@@ -56,8 +56,8 @@ std::vector<std::uint64_t> ticks_of(const std::vector<FeedRamp>& ramps) {
   return cycles;
 }
 
-// From rest to a speed, on at it, to another speed, and to rest. The last tick comes early, by half of
-// the time that a tick takes there.
+// Ramps from rest to a speed, at constant speed, to another speed, and to rest. The last tick before rest comes early,
+// by half of the time that a tick takes there.
 TEST(FeedRamp, TicksComeAtTheirTimes) {
   std::mt19937_64 random(3);
   const auto between = [&random](double low, double high) {
@@ -77,7 +77,7 @@ TEST(FeedRamp, TicksComeAtTheirTimes) {
     for (const FeedRamp& ramp : ramps) {
       for (std::uint64_t n = 1; n <= ramp.ticks; ++n, ++tick) {
         const double late = static_cast<double>(cycles[tick]) - begin - clocks_to(ramp, static_cast<double>(n));
-        // At the speeds near rest what is rounded is a longer time.
+        // Near rest, rounding has a larger effect on the time.
         const double at_rest = ramp.end_speed == 0 ? tick_at_rest(ramp) : 0;
         ASSERT_NEAR(late, n == ramp.ticks ? -0.51 * at_rest : 0, 4 + 0.03 * at_rest)
             << "tick " << n << " of " << ramp.speed << " to " << ramp.end_speed;
@@ -92,11 +92,11 @@ TEST(FeedRamp, AShortPieceHasItsMeanRate) {
   EXPECT_EQ(piece.acceleration, 0);
   EXPECT_EQ(piece.rate, std::uint64_t{1} << 63);
   EXPECT_EQ(piece.floor, static_cast<std::uint32_t>(0.4 * 0x1p32));
-  // One tick a clock, where the field has no room for 1 itself.
+  // One tick per clock: the field cannot hold 1 itself.
   EXPECT_EQ(feed_for_ramp(ramp_of(100, kRampHz, kRampHz), kRampHz).rate, std::uint64_t{0} - 2048);
 }
 
-// Half of the slew's time at the highest speed; 0 where the piece ends at rest, and only there.
+// The ticks of half the slew time at the highest speed; 0 if and only if the piece ends at rest.
 TEST(FeedRamp, StopDistance) {
   FeedRamp ramp = ramp_of(1000, 0, 20'000);
   EXPECT_EQ(feed_for_ramp(ramp, kRampHz).stop_distance, 1U);

@@ -9,7 +9,7 @@
 namespace trammel::driver {
 namespace {
 
-// The clocks of a piece, as the model's card takes them.
+// The driver's clocks of a piece equal those that the model takes.
 TEST(FeedTime, IsWhatTheCardTakes) {
   const auto unit = [](double rate) { return static_cast<std::int64_t>(rate * 18446744073709551616.0); };
   const auto piece = [&](std::uint64_t ticks, double rate, double acceleration, double jerk, double floor) {
@@ -38,8 +38,8 @@ TEST(FeedTime, IsWhatTheCardTakes) {
   }
 }
 
-// By hand: at constant jerk from rate r the rate is 0 after k updates, k (k - 1) = 2 r / jerk, and 2/3 of r k updates
-// of ticks are given then.
+// Computed by hand: at constant jerk, rate r falls to 0 after k updates, with k (k - 1) = 2 r / jerk. The feed has then
+// made 2/3 of the ticks that k updates at rate r would make.
 TEST(FeedTime, KnowsWhereAPieceWouldReverse) {
   const auto unit = [](double rate) { return static_cast<std::int64_t>(rate * 18446744073709551616.0); };
   FeedCommand feed;
@@ -50,17 +50,17 @@ TEST(FeedTime, KnowsWhereAPieceWouldReverse) {
   feed.ticks = 2160;
   ASSERT_TRUE(ticks_to_reversal(feed));
   EXPECT_NEAR(*ticks_to_reversal(feed), 2134, 4);
-  // Held up by its acceleration: it turns later.
+  // The acceleration delays the reversal beyond the end.
   feed.acceleration = unit(1e-4);
   EXPECT_FALSE(ticks_to_reversal(feed));
-  // Down, and up again by the jerk: it has reversed between.
+  // The rate falls below 0 before the jerk raises it again.
   feed.acceleration = unit(-4e-4);
   feed.jerk = unit(7e-7);
   feed.ticks = 700;
   EXPECT_TRUE(ticks_to_reversal(feed));
-  feed.jerk = unit(9e-7);  // 0.1 - 4e-4^2 / (2 * 9e-7) > 0
+  feed.jerk = unit(9e-7);  // lowest rate: 0.1 - 4e-4^2 / (2 * 9e-7) > 0
   EXPECT_FALSE(ticks_to_reversal(feed));
-  // Without jerk; upwards; at rest for ever.
+  // Without jerk: a falling rate, a rising rate, a constant rate.
   feed = FeedCommand{10'000, static_cast<std::uint64_t>(unit(0.1)), unit(-1e-4), 0};
   EXPECT_NEAR(ticks_to_reversal(feed).value_or(0), 1602, 2);
   feed.acceleration = unit(1e-4);

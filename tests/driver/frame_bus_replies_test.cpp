@@ -1,5 +1,5 @@
-// FrameBus and replies that are whole frames, but not those of a healthy card to this request: each is passed over, and
-// what then becomes of the request is told.
+// FrameBus and replies that are whole frames, but not replies of a working card to this request. FrameBus ignores each
+// of them and reports the result of the request.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using frames::Reply;
 using frames::Result;
 using ::testing::HasSubstr;
 
-// A card with a memory at the end of a link in memory, whose replies a test may change or drop.
+// An in-memory link to a card with a memory. A test may change or drop its replies.
 class ReplyLink final : public ByteLink {
  public:
   void send(const std::uint8_t* bytes, std::size_t count) override {
@@ -63,7 +63,7 @@ class ReplyLink final : public ByteLink {
     if (write) written.push_back(data);
     return frames::Endpoint::Answer{false, 0x1234};
   }};
-  std::function<bool(Reply&)> on_reply;  // false: it is lost
+  std::function<bool(Reply&)> on_reply;  // false: the reply is lost
   bool interrupting = false;
 
  private:
@@ -71,7 +71,7 @@ class ReplyLink final : public ByteLink {
   std::chrono::nanoseconds clock_{0};
 };
 
-// Reads and writes; the others tell of the connection.
+// True for replies to reads and writes; other replies belong to the connection.
 bool of_an_access(const Reply& reply) { return reply.made != 0 || reply.has_data; }
 
 class FrameReplies : public ::testing::Test {
@@ -112,7 +112,7 @@ TEST_F(FrameReplies, FewerWordsThanAskedForWithoutARefusal) {
             "the card made 1 of 2 accesses and refused none");
 }
 
-// Replies with the right number and the wrong shape: none of them is the card's.
+// Replies with a wrong epoch, with data after a write, or with a wrong number are ignored.
 TEST_F(FrameReplies, AnotherShapeIsPassedOver) {
   const std::function<void(Reply&)> changes[] = {
       [](Reply& reply) { reply.epoch = static_cast<std::uint16_t>(reply.epoch + 1); },
@@ -154,7 +154,7 @@ TEST_F(FrameReplies, AReplyToAConnectionTellsOfNoAccesses) {
   }
 }
 
-// Another program has used the card meanwhile: its numbers have moved on.
+// Another program has used the card in the meantime, so its last number is higher.
 TEST_F(FrameReplies, ACardThatOthersHaveUsedIsToldFromOneThatHasRunTheRequest) {
   connect();
   ASSERT_EQ(write(), "");
@@ -177,14 +177,14 @@ TEST_F(FrameReplies, OpensAtOnceOrNotAtAll) {
   EXPECT_EQ(asked, 1U);
   link_.on_reply = nullptr;
   connect();
-  // Its requests are tried as often as ever.
+  // The option does not reduce the number of tries of a request.
   unsigned lost = 0;
   link_.on_reply = [&](Reply& reply) { return !of_an_access(reply) || ++lost > 3; };
   EXPECT_EQ(write(), "");
   EXPECT_EQ(lost, 4U);
 }
 
-// The caller's end is no silence of the card's: it passes through, whatever is tried.
+// An interrupt by the caller is not treated as a silent card: it passes through every call.
 TEST_F(FrameReplies, AnInterruptPassesThrough) {
   connect();
   link_.on_reply = [](Reply& reply) { return !of_an_access(reply); };
@@ -195,7 +195,7 @@ TEST_F(FrameReplies, AnInterruptPassesThrough) {
   link_.interrupting = false;
   link_.on_reply = nullptr;
   EXPECT_EQ(bus_->resume(), 1U);
-  // Likewise while it connects anew.
+  // It also passes through a new connection.
   link_.on_reply = [&](Reply& reply) {
     link_.interrupting = !of_an_access(reply);
     return false;

@@ -1,4 +1,5 @@
-// FrameBus over a link that damages, loses, repeats and breaks: what it reports is what the card has done.
+// FrameBus over a link that damages, loses and repeats frames, and that fails. FrameBus must report exactly the
+// accesses that the card has made.
 #include "trammel/driver/frame_bus.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ using namespace trammel;
 using namespace std::chrono_literals;
 using driver::Access;
 
-// A link in memory with a clock of its own; each byte takes a microsecond.
+// An in-memory link with its own clock; each byte takes 1 us.
 class Link final : public driver::ByteLink {
  public:
   explicit Link(frames::Endpoint::Access access) : endpoint(std::move(access)) {}
@@ -97,7 +98,8 @@ TEST(FrameBus, OneRequestForWhatGoesTogether) {
   EXPECT_EQ(accesses[103].data, 2U);
   EXPECT_EQ(accesses[104].data, 1U);
   EXPECT_EQ(memory.log.size(), 103U);
-  EXPECT_EQ(bus.counts().requests, 5U);  // 59 and 41 to the one address, 3, and two reads downwards
+  EXPECT_EQ(bus.counts().requests,
+            5U);  // 59 and 41 writes to one address, 3 writes, and two reads at falling addresses
   EXPECT_EQ(bus.counts().sent_again, 0U);
   EXPECT_EQ(bus.transfer(nullptr, 0), 0U);
 }
@@ -115,7 +117,7 @@ TEST(FrameBus, ARefusalStopsAtItsWord) {
   EXPECT_EQ(bus.transfer(accesses.data(), accesses.size()), 4U);
 }
 
-// What a bad link does to bytes on their way.
+// Damages bytes in transit, as a bad link does.
 void spoil(frames::Bytes& bytes, std::mt19937_64& random) {
   if (bytes.empty() || random() % 4 != 0) return;
   const auto place = static_cast<std::size_t>(random() % bytes.size());
@@ -176,7 +178,7 @@ TEST(FrameBus, ABadLinkMakesEveryAccessOnce) {
   EXPECT_GT(bus.counts().strange, 1'000U);
 }
 
-// The link goes at any request, before or after the card has run it; resume() knows which.
+// The link fails at any request, before or after the card has run it. resume() reports which.
 TEST(FrameBus, AfterALossItIsKnownWhatRan) {
   for (const bool ran : {false, true}) {
     for (const bool has_break : {false, true}) {
@@ -249,7 +251,7 @@ TEST(FrameBus, NoCardIsALinkError) {
   link.on_reply = [](frames::Bytes& bytes) { bytes.clear(); };
   EXPECT_THROW(driver::FrameBus bus(link), driver::LinkError);
   link.on_reply = nullptr;
-  // An echo of the host's own frames is no card either.
+  // An echo of the host's own frames is not taken for a card.
   link.on_send = [](frames::Bytes&) {};
   Link echo([](bool, std::uint32_t, std::uint32_t) { return frames::Endpoint::Answer{}; });
   frames::Bytes last;
@@ -258,7 +260,7 @@ TEST(FrameBus, NoCardIsALinkError) {
   EXPECT_THROW(driver::FrameBus bus(echo), driver::LinkError);
 }
 
-// Numbers come round: nothing is lost, and the epoch has moved on by then.
+// Request numbers wrap. Nothing is lost, and the epoch changes before a number comes again.
 TEST(FrameBus, NumbersComeRound) {
   Memory memory;
   Link link(memory.access());
@@ -270,8 +272,8 @@ TEST(FrameBus, NumbersComeRound) {
   EXPECT_EQ(bus.counts().sent_again, 0U);
 }
 
-// Once nobody has patience with a card, a silent one is lost after that time, at once whenever it is asked again, and
-// no longer when it answers.
+// set_patience() limits the wait for a silent card. After this time the card counts as lost, and further requests fail
+// at once until it answers.
 TEST(FrameBus, PatienceEndsBeforeAllTries) {
   Memory memory;
   Link link(memory.access());
@@ -302,7 +304,7 @@ TEST(FrameBus, PatienceEndsBeforeAllTries) {
   ask();
   EXPECT_FALSE(bus.lost());
   EXPECT_EQ(memory.words[0x200 / 4], 7U);
-  // An answer that may take no longer than that is waited for as ever.
+  // If an answer may not take longer than the patience, all tries are made.
   silent = true;
   bus.set_patience(30s);
   const auto begun = link.now();

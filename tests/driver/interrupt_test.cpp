@@ -1,4 +1,4 @@
-// Calls that wait: they find a hold at once that was there before them, and end by a check of the caller's.
+// Calls that wait: they report an earlier hold at once, and a check of the caller can end them.
 #include "trammel/driver/interrupt.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ using std::chrono::steady_clock;
 using ::testing::HasSubstr;
 namespace hold_reg = card_map::reg;
 
-constexpr auto kLong = 20s;  // a machine with much else to do; what waits for ever takes longer
+constexpr auto kLong = 20s;  // enough on a busy host; an endless wait takes longer
 
 template <class Call>
 std::string held(Call call) {
@@ -57,7 +57,7 @@ TEST_F(HeldCard, IsFoundAtOnceByWhatWouldWaitForMotion) {
 TEST_F(HeldCard, OfItsOwnProgram) {
   card_.set_hold(true);
   EXPECT_THAT(held([&] { run_line(card_, line_); }), HasSubstr("the card holds: set by this program"));
-  // A stream may be opened, and another thread lets it go on.
+  // A stream may be opened in the hold, and another thread ends the hold.
   Stream stream(card_);
   stream.send({feed_of(1000), line_of(1000, 10), EndCommand{}});
   std::thread other([&] {
@@ -93,7 +93,7 @@ TEST_F(HeldCard, AFaultedOneSaysSo) {
   EXPECT_THROW(Stream{card_}, FaultError);
 }
 
-// The check is asked while the call waits; the card stops on the path, and is empty then.
+// The check runs while the call waits. The card then stops on the path and is empty.
 template <class Call>
 void expect_stop(sim::Engine& engine, Card& card, Call call) {
   const auto begun = steady_clock::now();
@@ -128,7 +128,7 @@ TEST_F(HeldCard, InterruptsStopLinesStreamsAndWaits) {
   run_line(card_, line_);
 }
 
-// A hold stops the time-outs, not a deadline.
+// A hold suspends time-outs, but not a deadline.
 TEST_F(HeldCard, ADeadlineEndsAWaitInAHold) {
   card_.request_hold(true);
   const auto begun = steady_clock::now();
@@ -158,7 +158,7 @@ TEST(InterruptScopes, Nest) {
   EXPECT_TRUE(interrupted()) << "it stays so";
 }
 
-// A card at the end of frames, that falls silent when it is told to.
+// A link that carries frames to a card; the card falls silent when `silent` is set.
 class SilentLink final : public ByteLink {
  public:
   explicit SilentLink(sim::Engine& engine)
@@ -190,7 +190,7 @@ class SilentLink final : public ByteLink {
   frames::Bytes reply_;
 };
 
-// The link's own time-out would be an hour, and a stop's takes a second.
+// The time-out of the link is an hour; the time-out of a stop is a second.
 TEST(InterruptScopes, EndTheWaitForASilentLink) {
   const auto engine = sim::make_model_engine({});
   SilentLink link(*engine);

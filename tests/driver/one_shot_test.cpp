@@ -60,7 +60,7 @@ TEST(OneShot, WordsAreTheRegistersInOrder) {
   const OneShotPart part = plan_line_clocks(timing(1'000'000), {0, -3, 0, 1}, kOne - 1).part(0);
   const auto words = part.words();
   ASSERT_EQ(words.size(), 35U);
-  // From FREQUENCY_LO[7] at 0x300 on, so axis n is at word 4 (7 - n).
+  // The first word is FREQUENCY_LO[7] at 0x300, so axis n begins at word 4 (7 - n).
   EXPECT_EQ(words[28], 0U);
   EXPECT_EQ(words[24], 3U);  // FREQUENCY_LO[1] = round(3 * 2^40 / (2^40 - 1))
   EXPECT_EQ(words[25], 0U);
@@ -86,12 +86,12 @@ TEST(OneShot, ADurationIsRoundedUpToClocks) {
 }
 
 TEST(OneShot, ASpeedAlongThePathIsExact) {
-  // A 3-4-5 triangle: 5000 pulses of path at 1000 pulses/s are 5 s; a hair more than 1000 is a clock less.
+  // 5000 pulses of path at 1000 pulses/s are 5 s. At slightly higher speeds the clocks are rounded up.
   const auto card = timing(1'000'000);
   EXPECT_EQ(plan_line(card, {3000, 4000}, PathSpeed{1000, 1}).clocks(), 5'000'000U);
   EXPECT_EQ(plan_line(card, {3000, 4000}, PathSpeed{1'000'001, 1000}).clocks(), 4'999'996U);
   EXPECT_EQ(plan_line(card, {3000, 4000}, PathSpeed{1'000'000'001, 1'000'000}).clocks(), 5'000'000U);
-  // sqrt(2) * 10^6: not a whole number of clocks, rounded up.
+  // sqrt(2) * 10^6 clocks, rounded up.
   EXPECT_EQ(plan_line(card, {1, 1}, PathSpeed{1}).clocks(), 1'414'214U);
 }
 
@@ -101,8 +101,8 @@ TEST(OneShot, APathSpeedBeyond64BitsIsExact) {
                 plan_line(card, {std::int64_t{1} << 62}, PathSpeed{(1ULL << 62) - 1, 1000});
               }),
               HasSubstr("too fast"));
-  // 2^40 pulses at 2^40 - 1 pulses in 1000 s: 3.6 clocks over 4 * 10^12, then up to whole clocks in each of the
-  // 257 parts that 2^40 pulses need.
+  // 2^40 pulses at 2^40 - 1 pulses in 1000 s take 4 * 10^12 + 3.6 clocks. 2^40 pulses need 257 parts, and the clocks of
+  // each part are rounded up.
   const OneShotPlan plan = plan_line(card, {1LL << 40}, PathSpeed{(1ULL << 40) - 1, 1000});
   EXPECT_EQ(plan.size(), 257U);
   EXPECT_EQ(plan.clocks(), (4'000'000'000'004U + 256) / 257 * 257);
@@ -207,7 +207,7 @@ TEST(OneShot, ABusyCardRefusesTheStartAndSaysWhy) {
   EXPECT_THAT(engine->positions(), ElementsAre(40, -100, 0, 0));
 }
 
-// The bridge answers the writes; the card refuses the second START.
+// The bridge acknowledges the writes; the card refuses the second START.
 TEST(OneShot, ASecondLineOnAPostedBusIsRefusedNotLost) {
   const auto engine = sim::make_model_engine({});
   PostedBus bus(*engine);
@@ -221,7 +221,7 @@ TEST(OneShot, ASecondLineOnAPostedBusIsRefusedNotLost) {
   EXPECT_EQ(engine->positions()[0], 200);
 }
 
-// What was refused before, and by whom ever, is neither lost nor taken for this one.
+// An earlier refusal, also of another program's access, is not lost and not taken for a refusal of this line.
 TEST(OneShot, AnEarlierRefusalIsNotTakenForThisOne) {
   for (const bool posted : {false, true}) {
     const auto engine = sim::make_model_engine({});
@@ -238,7 +238,7 @@ TEST(OneShot, AnEarlierRefusalIsNotTakenForThisOne) {
   }
 }
 
-// Ticks that do not match are the fault that is quickest to have.
+// Different ticks of line and feed are the quickest way to a fault.
 void raise_fault(Card& card) {
   Stream stream(card);
   LineCommand line;
@@ -292,7 +292,7 @@ TEST(OneShot, RunsAllPartsOfALongLine) {
   Card card = Card::open(bus);
   const OneShotPlan plan = plan_line(card.timing(), {1'000'003, -7}, std::chrono::hours(1));
   ASSERT_EQ(plan.size(), 4U);
-  // Busy for 15 minutes from each START on.
+  // The card is busy for 15 minutes after each START.
   std::vector<std::uint32_t> counts;
   std::chrono::nanoseconds until{0};
   bus.on_access = [&](const Access& access) {
@@ -353,7 +353,7 @@ TEST(OneShot, AnotherThreadAborts) {
   card.wait_until_idle(1ms);
 }
 
-// A card that hangs: busy for ever, and not held.
+// A card that hangs: it stays busy and is not held.
 TEST(OneShot, ALineThatNeverEndsTimesOut) {
   RegisterStub bus;
   Card card = Card::open(bus);
@@ -380,7 +380,7 @@ class ResettingBus final : public Bus {
   int sleeps_ = 0;
 };
 
-// It is idle then, and has not made its line.
+// After the reset the card is idle, but it has not made its line.
 TEST(OneShot, ACardThatWasResetIsFound) {
   const auto engine = sim::make_model_engine({});
   ResettingBus bus(*engine);

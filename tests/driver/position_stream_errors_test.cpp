@@ -1,5 +1,5 @@
-// Position streams near soft limits, and on cards and buses that do not what they should: what is refused, what closes
-// the stream, and what recover() makes of it.
+// Position streams near soft limits, and on faulty cards and buses: refusals, errors that close the stream, and
+// recover().
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -30,7 +30,7 @@ namespace field = card_map::field;
 constexpr std::uint64_t kMillisecond = 1000;  // clocks
 constexpr std::int64_t kWhole = PositionStream::kPulse;
 
-// A bus that changes what is read, and takes the host's time for its sleeps.
+// A bus that can change the data of reads, and whose sleeps also take time on the host.
 class ForgingBus final : public Bus {
  public:
   explicit ForgingBus(Bus& bus) : bus_(bus) {}
@@ -59,7 +59,7 @@ class StreamedPositions : public ::testing::Test {
   StreamedPositions() : bus_(*engine_), card_(Card::open(bus_)) { card_.set_slew_time(10ms); }
 
   void open(const PositionStreamOptions& options = {}) { stream_.emplace(card_, options); }
-  // A period of a millisecond, and most of its time; what is refused as text.
+  // Sends a period of 1 ms and waits for most of it. Returns the text of a refusal.
   std::string send(const Targets& pulses) {
     Targets targets{};
     for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = pulses[n] * kWhole;
@@ -67,7 +67,7 @@ class StreamedPositions : public ::testing::Test {
     if (refusal.empty()) engine_->wait(600);
     return refusal;
   }
-  // 10 pulses/ms to the positive side; it is under way then.
+  // Sends periods at 10 pulses/ms in the positive direction. The card then moves.
   void go(int periods = 10) {
     for (int i = 1; i <= periods; ++i) ASSERT_EQ(send({10 * i}), "");
     ASSERT_TRUE(card_.busy());
@@ -79,7 +79,8 @@ class StreamedPositions : public ::testing::Test {
   std::optional<PositionStream> stream_;
 };
 
-// At 10 pulses/ms: 10 for the stale period, and 50 for the ramp of 10 ms, which half of its time counts.
+// At 10 pulses/ms the card needs 10 pulses for the stale period and 50 for the ramp of 10 ms, which covers half of its
+// time at full speed.
 TEST_F(StreamedPositions, APeriodThatCannotStopBeforeASoftLimitIsRefused) {
   card_.set_soft_limits({SoftRange{-100, 100}});
   open();
@@ -101,7 +102,7 @@ TEST_F(StreamedPositions, APeriodThatCannotStopBeforeASoftLimitIsRefused) {
   EXPECT_EQ(card_.read_faults(), 0U);
 }
 
-// The limits are the card's, the targets count from where the stream began.
+// Limits are positions of the card; targets are relative to the beginning of the stream.
 TEST_F(StreamedPositions, AHostThatFallsSilentEndsBeforeTheSoftLimit) {
   run_line(card_, plan_line(card_.timing(), {20}, 20ms));
   card_.set_soft_limits({SoftRange{-100, 100}});
@@ -171,7 +172,8 @@ TEST_F(StreamedPositions, OpensInAHoldOfItsOwnProgram) {
   EXPECT_EQ(stream_->finish()[0], 5 * kWhole);
 }
 
-// Slow where it is late, then at full speed: what it is behind is caught up when there is room for it again.
+// A period is late at low speed; then the stream runs at full speed. The delay is made up only when the speed is low
+// again.
 TEST_F(StreamedPositions, NothingIsCaughtUpAtFullSpeed) {
   PositionStreamOptions options;
   options.max_speed[0] = 10'000;
@@ -223,7 +225,7 @@ TEST_F(StreamedPositions, ABusThatIsTooSlowIsSaid) {
   }
 }
 
-// Another period begins between the reads of a look: the next look is of one state.
+// Another period begins between the reads of one look, so the look is repeated.
 TEST_F(StreamedPositions, ALookAtTwoPeriodsIsMadeAgain) {
   open();
   go();

@@ -1,5 +1,5 @@
-// Position streaming on the golden model, by closed forms: every step of 30,000 periods (100,000 under TRAMMEL_LONG)
-// against the targets and the clock, late periods, missing ones, what is refused.
+// Position streaming on the golden model, against closed forms: every step of 30,000 periods (100,000 under
+// TRAMMEL_LONG) against the targets and the clock, late periods, missing periods, and refusals.
 #include "trammel/driver/position_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 
 namespace trammel::driver {
 
-// So many lines more were sent and have begun, as far as the stream knows.
+// Adds `lines` to the stream's numbers of sent and begun lines.
 struct PositionStreamCount {
   static void add(PositionStream& stream, std::uint32_t lines) {
     stream.lines_ += lines;
@@ -39,7 +39,7 @@ constexpr std::int64_t kPulse = PositionStream::kPulse;
 std::int64_t fraction(double pulses) { return std::llround(pulses * static_cast<double>(kPulse)); }
 double pulses(std::int64_t position) { return static_cast<double>(position) / static_cast<double>(kPulse); }
 
-// Two axes on sines that begin and end at rest, and one that is drawn out over the whole.
+// Two axes on sines that begin and end at rest, and one axis at constant speed. `share`: part of the run, 0 .. 1.
 Positions sines(double share, double turns) {
   Positions p{};
   p[0] = fraction(1000.25 * (1 - std::cos(2 * kPi * turns * share)));
@@ -48,7 +48,7 @@ Positions sines(double share, double turns) {
   return p;
 }
 
-// Each period at its time, as a servo thread sends them; notes what was told, and every step.
+// Sends each period when it is due, as a servo thread does. Records the targets and every step.
 class Host : public StepSink {
  public:
   explicit Host(const PositionStreamOptions& options = {}, std::uint32_t clock_hz = 1'000'000)
@@ -60,7 +60,7 @@ class Host : public StepSink {
     ahead_ = options.ahead;
   }
 
-  // Sends when its period is due, and so many clocks later.
+  // Sends a period `late` clocks after it is due.
   PositionStream::Sent send(const Positions& targets, std::uint64_t clocks, std::uint64_t late = 0) {
     const std::uint64_t due = next_ + late;
     if (engine->cycles() < due) engine->wait(due - engine->cycles());
@@ -73,14 +73,14 @@ class Host : public StepSink {
   void pin_step(const PinStep&) override {}
   void path_step(const PathStep& step) override { steps.push_back(step); }
 
-  // Steps are judged against the host's own clock: the first tick of the first period is tick 1 of clock `begin`.
+  // The steps compared with the host's clock, which is 0 at the beginning of the first period.
   struct Judged {
-    double farthest = 0;                // from the straight line between two targets, pulses
-    std::uint64_t steps = 0;            //
-    std::int64_t earliest = INT64_MAX;  // clocks from a step's tick to its clock
+    double farthest = 0;                // largest distance from the straight line between two targets, pulses
+    std::uint64_t steps = 0;            // number of steps
+    std::int64_t earliest = INT64_MAX;  // clocks from a step's tick on the host's clock to the step
     std::int64_t latest = INT64_MIN;
   };
-  // Times of periods from `first` to before `end`.
+  // Only periods `first` .. `end` - 1 count for `earliest` and `latest`.
   Judged judge(std::size_t first = 0, std::size_t end = SIZE_MAX) const;
 
   std::unique_ptr<sim::Engine> engine;
@@ -96,19 +96,20 @@ class Host : public StepSink {
     return options;
   }
 
-  std::uint64_t next_ = 0;  // clock in which the next period is due
+  std::uint64_t next_ = 0;  // clock at which the next period is due
   unsigned ahead_ = 0;
   std::vector<std::uint64_t> clocks_;
 };
 
-// For streams without a late period. Periods of even clocks: each begins in a clock of the host.
+// The periods that count must not be late. Clocks of periods must be even, so that each period begins with a whole
+// tick.
 Host::Judged Host::judge(std::size_t first, std::size_t end) const {
   Judged judged;
   std::vector<std::uint64_t> ends;
   for (const std::uint64_t clocks : clocks_) ends.push_back((ends.empty() ? 0 : ends.back()) + clocks);
   std::array<std::int64_t, card_map::kMaxAxes> position{};
   for (const PathStep& step : steps) {
-    // The FEED has a number too, behind the first lines.
+    // The FEED also takes a command number, after the first `ahead_` lines.
     const auto period = static_cast<std::size_t>(step.command < ahead_ ? step.command : step.command - 1);
     position[step.axis] += step.direction;
     const std::uint64_t begin = period == 0 ? 0 : ends[period - 1];
@@ -130,8 +131,8 @@ Host::Judged Host::judge(std::size_t first, std::size_t end) const {
 // 32-bit CPUs are emulated, some twenty times slower.
 constexpr bool kEmulated = sizeof(void*) < 8;
 
-// A kilohertz for 30 s (100 s under TRAMMEL_LONG): no step comes a clock early or late, none is farther than a pulse
-// from where it was told.
+// 1 kHz for 30 s (100 s under TRAMMEL_LONG). No step is early or late by a clock, and none is farther than about 1
+// pulse from the line between the targets.
 TEST(PositionStream, FollowsSines) {
   const std::size_t periods = kEmulated ? 2'000 : std::getenv("TRAMMEL_LONG") != nullptr ? 100'000 : 30'000;
   Host host;
@@ -148,7 +149,7 @@ TEST(PositionStream, FollowsSines) {
   }
   const Host::Judged judged = host.judge();
   EXPECT_EQ(judged.earliest, judged.latest);
-  // Half a pulse of the target's rounding, half of the line's, and a tick's way.
+  // Half a pulse by the rounding of the target, half a pulse by the line, and the distance of one tick.
   EXPECT_LE(judged.farthest, 1.0 + 0.02);
   EXPECT_GT(judged.farthest, 0.5);
   EXPECT_GT(judged.steps, periods);
@@ -156,7 +157,7 @@ TEST(PositionStream, FollowsSines) {
             << " pulses from the targets' line, all " << judged.latest << " clocks after their tick\n";
 }
 
-// Durations that make no whole clocks, and clocks that make no whole ticks: the sum is exact to a tick.
+// Durations that are not whole clocks, and clocks that are not whole ticks: the sum is exact to a tick.
 TEST(PositionStream, TimesAreCarriedOver) {
   constexpr std::uint64_t kPeriods = kEmulated ? 1'001 : 30'001;
   Host host({1, 4, {}, 1s});
@@ -170,20 +171,21 @@ TEST(PositionStream, TimesAreCarriedOver) {
     ASSERT_EQ(host.stream->send(p, period).stale_ticks, 0U) << i;
   }
   host.stream->finish();
-  // The last steps of the first and of the last period, each on the tick of its half of a fifth.
+  // The first step of the first period and the last step of the last period.
   const PathStep& first = host.steps.front();
   const PathStep& last = host.steps.back();
   const double clocks = static_cast<double>(last.cycle - first.cycle);
   const double all = static_cast<double>(kPeriods) * 333.333;
   EXPECT_NEAR(clocks, all - 333.333 / 3, 333.333 / 4);
   EXPECT_EQ(host.engine->positions()[0], std::llround(static_cast<double>(kPeriods) * 2.5 + 0.1));
-  // Ticks of all lines: what the durations sum up to, rounded down.
+  // No line has more than 167 ticks: 333.333 clocks at 2 clocks per tick, plus the remainder carried over.
   std::uint64_t ticks = 0;
   for (const PathStep& step : host.steps) ticks = std::max(ticks, step.tick);
   EXPECT_LE(ticks, 167U);
 }
 
-// Periods late by up to a whole one, again and again: the card goes on, and is brought back both in place and in time.
+// Many periods are late, by up to a whole period. The card continues along its line, then returns to the targets in
+// place and in time.
 TEST(PositionStream, LatePeriodsLeaveNoError) {
   constexpr std::size_t kPeriods = kEmulated ? 1500 : 4000;
   std::mt19937_64 random(5);
@@ -192,7 +194,7 @@ TEST(PositionStream, LatePeriodsLeaveNoError) {
   std::uint64_t most = 0;
   for (std::size_t i = 1; i <= kPeriods; ++i) {
     const bool is_late = i > 10 && i + 100 < kPeriods && i % 20 == 0;
-    // Two are queued ahead: later than that it comes after the end.
+    // Two periods are queued ahead, so a period that is late by more than 1000 clocks comes after the end of the queue.
     const auto sent = host.send(sines(static_cast<double>(i) / kPeriods, 3), 1000, is_late ? 1050 + random() % 900 : 0);
     late += sent.stale_ticks != 0 ? 1U : 0U;
     most = std::max(most, sent.stale_ticks);
@@ -206,7 +208,7 @@ TEST(PositionStream, LatePeriodsLeaveNoError) {
     EXPECT_LE(std::abs(end[n] - host.told.back()[n]), kPulse / 2) << n;
     EXPECT_EQ(host.engine->positions()[n] * kPulse, end[n]) << n;
   }
-  // The last hundred periods run as if nothing had been: at the host's times, as the first ten did.
+  // The last hundred periods run at the host's times again, like the first ten.
   const Host::Judged before = host.judge(0, 10);
   const Host::Judged behind = host.judge(kPeriods - 100);
   EXPECT_EQ(before.earliest, before.latest);
@@ -215,16 +217,16 @@ TEST(PositionStream, LatePeriodsLeaveNoError) {
   std::cout << late << " late periods, the latest by " << most << " ticks of 500\n";
 }
 
-// At constant speed a late period does not show in the speed: the steps stay as far apart as they were.
+// At constant speed a late period does not change the speed: the distances between steps stay about the same.
 TEST(PositionStream, ALatePeriodKeepsTheSpeed) {
   Host host;
   for (std::size_t i = 1; i <= 100; ++i) {
     Positions p{};
-    p[0] = static_cast<std::int64_t>(10 * i) * kPulse;  // a pulse in 100 clocks
+    p[0] = static_cast<std::int64_t>(10 * i) * kPulse;  // a pulse every 100 clocks
     host.send(p, 1000, i == 50 ? 1900 : 0);
   }
   EXPECT_GT(host.stream->stale_ticks(), 100U);
-  // Not to rest: the END stops it where it is.
+  // The targets do not slow down to rest, so the END stops the card at full speed.
   host.stream->finish();
   ASSERT_EQ(host.engine->positions()[0], 1000);
   std::uint64_t shortest = UINT64_MAX;
@@ -234,7 +236,8 @@ TEST(PositionStream, ALatePeriodKeepsTheSpeed) {
     shortest = std::min(shortest, apart);
     longest = std::max(longest, apart);
   }
-  // One pulse's rounding over the shortened period of 5 pulses or more, and a line that went on by parts of a pulse.
+  // Reasons for the tolerance: rounding of one pulse in a shortened period of 5 pulses or more, and a line that
+  // continued by a fraction of a pulse.
   EXPECT_GT(shortest, 50U);
   EXPECT_LT(longest, 200U);
 }
@@ -262,15 +265,15 @@ TEST(PositionStream, AMissingPeriodStopsAndIsRecoveredFrom) {
     EXPECT_THROW(host.stream->send(target(i), 1000), StateError);
     const PositionStream::Stopped stopped = host.stream->recover();
     EXPECT_EQ(stopped.faults, field::kFaultMissingPeriod);
-    // The ramp of 50 ms takes 25 ms at full speed: 12,500 ticks.
+    // The ramp of 50 ms covers the distance of 25 ms at full speed: 12,500 ticks.
     EXPECT_NEAR(static_cast<double>(stopped.stale_ticks), 500.0 * stale_periods + 12'500, 130);
-    // Along its last line: 7 and 3 pulses in 500 ticks.
+    // The card continued along its last line: 7 and 3 pulses in 500 ticks.
     const auto gone = static_cast<std::int64_t>(stopped.stale_ticks);
     EXPECT_EQ(stopped.positions[0], (350 + (7 * gone + 250) / 500) * kPulse);
     EXPECT_EQ(stopped.positions[3], -(150 + (3 * gone + 249) / 500) * kPulse);
     for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(host.engine->positions()[n] * kPulse, stopped.positions[n]);
     EXPECT_EQ(host.card.read_faults(), 0U);
-    // On from there.
+    // The stream continues from there.
     Positions from = stopped.positions;
     for (int k = 0; k < 20; ++k) {
       from[0] += 5 * kPulse / 2;
@@ -297,7 +300,7 @@ TEST(PositionStream, RefusesBeforeAnythingIsSent) {
   };
   p[0] = 7 * kPulse;  // 7,000 pulses/s
   EXPECT_NE(error_of(p, 1000).find("axis 0: 7 pulses in 1000 clocks"), std::string::npos);
-  p[0] = 6 * kPulse;  // 5,000 and one that may be the rounding's
+  p[0] = 6 * kPulse;  // 5,000 pulses/s, and one pulse that may be due to rounding
   EXPECT_EQ(error_of(p, 1000), "");
   p[1] = 200 * kPulse;
   EXPECT_NE(error_of(p, 1000).find("axis 1"), std::string::npos) << "the shaper takes 8 clocks a pulse";
@@ -313,7 +316,7 @@ TEST(PositionStream, RefusesBeforeAnythingIsSent) {
   EXPECT_THROW(host.stream->send(p, -1ns), ArgumentError);
   EXPECT_THROW(host.stream->send(p, 5000s), ArgumentError);
   EXPECT_EQ(host.engine->read(reg::kGeometryBegun), 1U);
-  // What was refused has changed nothing.
+  // The refused periods have changed nothing.
   p[0] = 4 * kPulse;
   EXPECT_EQ(error_of(p, 1000), "");
   host.stream->finish();
@@ -365,7 +368,7 @@ TEST(PositionStream, SaysThatTheQueueIsFull) {
   EXPECT_GE(sent, 3U);
   EXPECT_LE(sent, 6U);
   engine->wait(100'000);
-  // What was not sent may be, as soon as there is room.
+  // The refused period can be sent as soon as there is room.
   stream.send(p, 50'000);
   ++sent;
   EXPECT_EQ(stream.finish()[0], static_cast<std::int64_t>(sent) * kPulse);
@@ -386,7 +389,7 @@ TEST(PositionStream, RunsOverPostedWrites) {
   EXPECT_EQ(engine->positions()[2], -150);
 }
 
-// A card that has begun `earlier` lines more than it is made to begin here.
+// A card whose number of begun lines is higher by `earlier`.
 class LongRun final : public Bus {
  public:
   explicit LongRun(Bus& bus) : bus_(bus) {}
@@ -406,8 +409,8 @@ class LongRun final : public Bus {
   Bus& bus_;
 };
 
-// At a kilohertz the card's count of lines wraps after 49.7 days: the stream goes on, the FEED is not sent again, and a
-// count that goes back is still found.
+// At 1 kHz the card's count of lines wraps after 49.7 days. The stream continues, the FEED is not sent again, and a
+// count that goes back is still detected.
 TEST(PositionStream, GoesOnWhereTheCountOfLinesWraps) {
   for (const bool reset : {false, true}) {
     const auto engine = sim::make_model_engine({});
@@ -440,7 +443,7 @@ TEST(PositionStream, GoesOnWhereTheCountOfLinesWraps) {
   }
 }
 
-// An abort by somebody else, a reset: no wrong position is reported.
+// After an abort by another program or a reset, no wrong position is reported.
 TEST(PositionStream, NoticesWhatOthersDo) {
   for (const bool reset : {false, true}) {
     Host host;

@@ -1,5 +1,5 @@
-// Probing through the stream: on the model what it tells of the edge and of the rest, what it refuses before anything
-// moves; on a stub what it makes of a card that somebody else has used, or that hangs.
+// Probing through the stream. On the model: the results at the edge and at rest, and refusals before any motion. On a
+// stub: a card that another program has used, and a card that hangs.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -24,15 +24,14 @@ using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// 1,000 pulses in a second.
+// A line of 1,000 pulses in 1 s.
 std::vector<Command> probing_paths() { return {feed_of(62'500), line_of(62'500, 1000)}; }
 
 class Probing : public ::testing::Test {
  protected:
   Probing() : card_(Card::open(*engine_)) { card_.set_slew_time(20ms); }
 
-  // Input 5 gets the level at the first look that finds the axis 100 pulses on its way. The next look comes 5 pulses
-  // later.
+  // Options that set input 5 to `level` at the first look after 100 pulses. The next look comes 5 pulses later.
   StreamOptions tripping(bool level) {
     StreamOptions options;
     options.poll_clocks = 5000;
@@ -46,7 +45,7 @@ class Probing : public ::testing::Test {
 
   std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine({});
   Card card_;
-  std::int64_t tripped_at_ = 0;  // pulses
+  std::int64_t tripped_at_ = 0;  // position at which input 5 was set, pulses
 };
 
 TEST_F(Probing, TheEdgeEndsTheWayAndTheStreamGoesOn) {
@@ -64,7 +63,7 @@ TEST_F(Probing, TheEdgeEndsTheWayAndTheStreamGoesOn) {
     ASSERT_GE(tripped_at_, 100);
     EXPECT_EQ(result.edge.position[0], tripped_at_) << "of the edge, not of the look that has found it";
     EXPECT_EQ(result.edge.geometry_begun, 2U) << "the line before, and that of the probing";
-    // 10 ms of the ramp's 20 count: 10 pulses.
+    // The ramp of 20 ms covers the distance of 10 ms at full speed: 10 pulses.
     EXPECT_GE(result.rest.position[0], result.edge.position[0] + 9);
     EXPECT_LE(result.rest.position[0], result.edge.position[0] + 12);
     EXPECT_EQ(result.rest.position[0], engine_->positions()[0]);
@@ -87,7 +86,7 @@ TEST_F(Probing, NothingMovesWhereTheInputHasItsLevelAlready) {
   EXPECT_EQ(result.edge.position[0], 0);
   EXPECT_EQ(result.rest.position[0], 0);
   EXPECT_EQ(engine_->positions()[0], 0);
-  // The other level is not there: the whole way.
+  // The input never has the other level, so the whole line runs.
   const ProbeResult back = stream.probe({5, false}, {feed_of(1000), line_of(1000, 10)});
   EXPECT_EQ(back.outcome, ProbeOutcome::kMissed);
   EXPECT_EQ(engine_->positions()[0], 10);
@@ -126,7 +125,7 @@ TEST_F(Probing, WhatCannotBeProbedIsRefusedBeforeAnythingMoves) {
   EXPECT_EQ(stream.probe({15, true}, {feed_of(100), line_of(100, 1)}).outcome, ProbeOutcome::kMissed);
 }
 
-// A card that says what the test wants.
+// A card whose registers the test sets.
 class ProbingOnStub : public ::testing::Test {
  protected:
   ProbingOnStub() {

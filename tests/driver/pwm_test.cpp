@@ -1,4 +1,4 @@
-// Pulses on outputs: what the driver writes and reads, and the scale of a duty that follows the speed.
+// PWM on outputs: writes and reads of the driver, and the scale of a duty that follows the speed.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -71,7 +71,7 @@ TEST(PwmSettings, AFrequencyIsAPeriodOfWholeClocks) {
   EXPECT_THAT(argument_error([] { pwm_period(1, 100'000'001); }), HasSubstr("100000001 clocks of the card"));
 }
 
-// The card's rule, in the exact arithmetic of the reference.
+// The card's duty at a rate, in the exact arithmetic of the reference.
 double duty_at(const PwmCommand& pwm, double rate) {
   const double u = std::floor(rate * 0x1p31 + 0.5);
   const double w = std::min(std::ldexp(u, pwm.shift), 0x1p31 - 1);

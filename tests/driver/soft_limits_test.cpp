@@ -1,4 +1,4 @@
-// Soft limits of the card: what the driver writes, and on the model that they stop an axis where they say.
+// Soft limits of the card: writes of the driver; on the model, that an axis stops at its limit.
 #include <gmock/gmock.h>
 
 #include "error_message.hpp"

@@ -1,4 +1,4 @@
-// For how long the stream waits, on a stub that never ends what it was sent: what stops the time, what stretches it.
+// Time-outs of the stream, on a stub that never completes its commands: states that suspend or stretch the time.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class StreamBudget : public ::testing::Test {
     card_.emplace(Card::open(bus_));
     stream_.emplace(*card_, StreamOptions{100, kMargin, nullptr, false});
   }
-  // Sends, and has the card busy with the first piece from then on.
+  // Sends the commands; the card is then busy with the first piece.
   void begin(const std::vector<Command>& commands) {
     stream_->send(commands);
     bus_.values[reg::kStatus] = field::kStatusBusy;
@@ -50,7 +50,7 @@ class StreamBudget : public ::testing::Test {
   std::optional<Stream> stream_;
 };
 
-// An input comes when it comes.
+// Nobody knows when an input will change, so this wait does not count.
 TEST_F(StreamBudget, AWaitForAnInputStopsTheTime) {
   begin({feed_of(1000), line_of(1000)});  // 16 ms
   bus_.next[reg::kStatus] = std::deque<std::uint32_t>(500, field::kStatusBusy | field::kStatusWaiting);
@@ -59,7 +59,7 @@ TEST_F(StreamBudget, AWaitForAnInputStopsTheTime) {
   EXPECT_LE(bus_.slept, 500 * kPoll + 16ms + kMargin + 2 * kPoll);
 }
 
-// A ratio of 0 is a hold of the pieces of its class: their time begins when it has another one.
+// A ratio of 0 holds the pieces of its class. Their time begins when the ratio is above 0.
 TEST_F(StreamBudget, AClassThatStandsIsWaitedForUntilItGoes) {
   card_->set_ratio(PieceClass::kRapid, 0);
   begin({feed_of(1000), rapid_of(1000), line_of(2000)});
@@ -67,13 +67,13 @@ TEST_F(StreamBudget, AClassThatStandsIsWaitedForUntilItGoes) {
   bus_.values[reg::kRatioRapid] = Card::kFullRatio / 2;
   EXPECT_THROW(stream_->finish(), TimeoutError);
   EXPECT_EQ(card_->ratio(PieceClass::kRapid), Card::kFullRatio / 2) << "as the card has said";
-  // The first piece, 300 looks; then all is allowed anew, the second piece at half its speed.
+  // The first piece and 300 looks; then the time of both pieces starts again, with the second piece at half its speed.
   constexpr auto kExpected = 16ms + 300 * kPoll + 16ms + 32ms + kMargin;
   EXPECT_GE(bus_.slept, kExpected - 2 * kPoll);
   EXPECT_LE(bus_.slept, kExpected + 3 * kPoll);
 }
 
-// Overdue, but the card says that a piece runs: it was slower for a while.
+// The time is over, but the card reports a running piece: it was slower for a while, so its time starts again.
 TEST_F(StreamBudget, APieceThatRunsIsAllowedItsTimeAgain) {
   begin({feed_of(1000), line_of(1000)});
   bus_.next[reg::kSnapRate] = {7, 7};
@@ -81,7 +81,7 @@ TEST_F(StreamBudget, APieceThatRunsIsAllowedItsTimeAgain) {
   EXPECT_THROW(stream_->finish(), TimeoutError);
   EXPECT_GE(bus_.slept, 3 * (16ms + kMargin));
   EXPECT_LE(bus_.slept, 3 * (16ms + kMargin) + 5 * kPoll);
-  // One that has a rate and stands does not.
+  // A piece with a rate but a ratio of 0 gets no further time.
   bus_.next[reg::kSnapRate] = {7, 7};
   bus_.values[reg::kSnapRatio] = 0;
   bus_.forget();
@@ -89,15 +89,16 @@ TEST_F(StreamBudget, APieceThatRunsIsAllowedItsTimeAgain) {
   EXPECT_LE(bus_.slept, 16ms + kMargin + 5 * kPoll);
 }
 
-// Two pieces at the lowest ratio whose clocks, of which a piece counts for 4e18 at most, wrap to 141,072 in 64 bits.
+// Two pieces at the lowest ratio. A piece counts for at most 4e18 clocks. The sum of the clocks wraps to 141,072 in 64
+// bits.
 TEST_F(StreamBudget, APieceThatTakesForEverIsNoTimeOut) {
   card_->set_ratio(1);
   FeedCommand endless = feed_of((std::uint64_t{1} << 40) - 1, 0);
   endless.floor = 1;
-  constexpr std::uint64_t kWrap = std::uint64_t{1} << 48;  // times 2^16 of the ratio
+  constexpr std::uint64_t kWrap = std::uint64_t{1} << 48;  // 2^64, divided by 2^16 for the ratio
   constexpr std::uint64_t kRest = kWrap - 4'000'000'000'000'000'000 % kWrap;
   static_assert(kRest % 256 == 0);
-  const FeedCommand rest = feed_of(kRest / 256, std::uint64_t{1} << 56);  // a tick in 256 clocks
+  const FeedCommand rest = feed_of(kRest / 256, std::uint64_t{1} << 56);  // a tick every 256 clocks
   begin({endless, rest, line_of(1)});
   bus_.next[reg::kStatus] = std::deque<std::uint32_t>(3000, field::kStatusBusy);
   bus_.next[reg::kFeedBegun] = std::deque<std::uint32_t>(3000, 1);

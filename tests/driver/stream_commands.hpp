@@ -16,7 +16,7 @@ inline LineCommand line_of(std::uint64_t ticks, std::int64_t pulses = 0) {
   return line;
 }
 
-// A tick every 16 clocks unless another rate is given.
+// A feed piece with one tick every 16 clocks, unless another rate is given.
 inline FeedCommand feed_of(std::uint64_t ticks, std::uint64_t rate = std::uint64_t{1} << 60) {
   FeedCommand feed;
   feed.ticks = ticks;

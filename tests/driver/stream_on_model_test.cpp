@@ -18,7 +18,7 @@ using test::PostedBus;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// A bus that notes the words of the stream on their way to the model.
+// A bus that records the words of the stream on their way to the model.
 class Noting final : public Bus {
  public:
   explicit Noting(Bus& bus) : bus_(bus) {}
@@ -80,7 +80,7 @@ TEST(StreamOnModel, OutputsAndMarksAtTheirPlaceOnThePath) {
   engine->set_inputs(0b1001);
   engine->wait(10);
   EXPECT_EQ(card.read_inputs(), 0b1000);
-  Stream stream(card);  // its abort gives the outputs their safe levels
+  Stream stream(card);  // opening it aborts, which sets the outputs to their safe levels
   EXPECT_EQ(card.read_outputs(), 0b0010);
   LineCommand line;
   line.ticks = 100;
@@ -125,7 +125,7 @@ TEST(StreamOnModel, AFaultWhileWaitingEndsTheWait) {
   EXPECT_EQ(engine->positions()[0], 2);
 }
 
-// Recovery in whichever order, with an abort or without: nothing of before the fault moves.
+// Recovery in any order, with an abort or without: no command from before the fault moves the card.
 TEST(StreamOnModel, RecoversInWhicheverOrder) {
   for (int order = 0; order < 3; ++order) {
     const auto engine = sim::make_model_engine({});
@@ -151,7 +151,7 @@ TEST(StreamOnModel, RecoversInWhicheverOrder) {
   }
 }
 
-// Changes one word of the stream on its way, as a bad cable would.
+// Changes one word of the stream in transit, as a bad cable would.
 class Corrupting final : public Bus {
  public:
   Corrupting(Bus& bus, int word, std::uint32_t flip) : bus_(bus), left_(word), flip_(flip) {}
@@ -174,7 +174,7 @@ TEST(StreamOnModel, ARefusedCommandIsDroppedWholeAndTheStreamRestarts) {
   for (const bool posted : {false, true}) {
     const auto engine = sim::make_model_engine({});
     PostedBus bridge(*engine);
-    // The second line's increment gets a bit that is none of its 42.
+    // Sets a bit above the 42 bits of the second line's increment.
     Corrupting bus(posted ? static_cast<Bus&>(bridge) : *engine, 4 + 3, 0x40000000);
     Card card = Card::open(bus);
     Stream stream(card);

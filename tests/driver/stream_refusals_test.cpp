@@ -1,5 +1,5 @@
-// What the stream refuses by the card that it has, and what it makes of answers that no healthy card gives: rooms that
-// are none, queues that never empty, refusals of accesses that were not its own.
+// Commands that the stream refuses because of the card. Answers that no working card gives: impossible rooms, queues
+// that never empty, refusals of accesses that the stream did not make.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ TEST_F(StreamRefusals, AnArcInFourDirectionsNeedsTheAccumulatorAlone) {
   EXPECT_EQ(stream_->sent(), 1U);
 }
 
-// PORTS is read once.
+// The stream reads PORTS once.
 TEST_F(StreamRefusals, InputsThatTheCardLacks) {
   bus_.add_engines(card_map::engines::kPathCommands);
   open();
@@ -92,7 +92,7 @@ TEST_F(StreamRefusals, ARoomBeyondItsQueueIsNoCard) {
             "stream: a geometry queue with room for 4097 halfwords: what answers is no card");
 }
 
-// It has begun all and is idle, and still has no room: nothing but its time ends the wait.
+// The card has begun all commands and is idle, but still has no room. Only the time-out ends the wait.
 TEST_F(StreamRefusals, AnIdleCardWithoutRoomTimesOut) {
   open();
   bus_.values[reg::kGeometryRoom] = 6;
@@ -113,7 +113,7 @@ TEST_F(StreamRefusals, AnIdleCardThatKeepsWhatItWasSentWasReset) {
   EXPECT_EQ(message_of<StateError>([&] { stream_->flush(); }), "stream: closed by an error; restart it");
 }
 
-// Another access than a word of the stream was refused, by a bus that does not tell of it.
+// An access other than a word of the stream was refused, on a bus that does not report it.
 TEST_F(StreamRefusals, ARefusalThatALookFindsClosesTheStream) {
   open();
   stream_->send(line_of(1));
@@ -143,7 +143,7 @@ TEST_F(StreamRefusals, AnEndThatIsBegunButNotReachedIsWaitedFor) {
   EXPECT_EQ(bus_.sleeps.size(), 3U);
 }
 
-// A hold of somebody else's, which ends while the stream waits.
+// A hold of another program, which ends while the stream waits.
 TEST(StreamHolds, AStreamMayOpenInAHold) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -163,7 +163,7 @@ TEST(StreamHolds, AStreamMayOpenInAHold) {
   EXPECT_EQ(engine->positions()[0], 10);
 }
 
-// Many lines for one piece: it is the geometry queue that fills, and its watermark that wakes.
+// Many lines for one piece fill the geometry queue; its watermark ends the wait.
 TEST(StreamWatermarks, OfTheGeometryQueue) {
   sim::ModelOptions small;
   small.interrupt = true;

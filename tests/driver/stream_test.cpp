@@ -22,14 +22,14 @@ using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// The same as writes to the stream.
+// The words of the commands as writes to STREAM.
 std::vector<Made> writes_of(const std::vector<Command>& commands, std::uint8_t number) {
   std::vector<Made> writes;
   for (const std::uint32_t word : words_of(commands, number)) writes.push_back(wrote(reg::kStream, word));
   return writes;
 }
 
-// What the bus sees, on a stub that says what the test wants.
+// The accesses on the bus, with a stub whose registers the test sets.
 class StreamOrder : public ::testing::Test {
  protected:
   StreamOrder() : card_(Card::open(bus_)) {
@@ -71,7 +71,7 @@ TEST_F(StreamOrder, OpensAnIdleCardOnly) {
 
 TEST_F(StreamOrder, RoomIsReadOnceAndThenCounted) {
   Stream stream = open_stream();
-  // A line of one axis takes 7 halfwords, a piece 20.
+  // A line of one axis takes 7 halfwords, a feed piece 20.
   bus_.next[reg::kGeometryRoom] = {14, 4};
   bus_.next[reg::kFeedRoom] = {20, 4};
   stream.send(line_of(5));
@@ -88,7 +88,7 @@ TEST_F(StreamOrder, RoomIsReadOnceAndThenCounted) {
 
 TEST_F(StreamOrder, SeveralCommandsAreOneTransferAsFarAsThereIsRoom) {
   Stream stream = open_stream();
-  bus_.next[reg::kGeometryRoom] = {20, 6, 7};  // two lines of 7
+  bus_.next[reg::kGeometryRoom] = {20, 6, 7};  // room for two lines of 7 halfwords
   bus_.values[reg::kStatus] = field::kStatusBusy;
   stream.send({line_of(1), line_of(2), line_of(3)});
   EXPECT_THAT(bus_.transfers, ElementsAre(1U, 8U, 1U, 3U, 1U, 4U));
@@ -102,7 +102,7 @@ TEST_F(StreamOrder, SeveralCommandsAreOneTransferAsFarAsThereIsRoom) {
 
 TEST_F(StreamOrder, PutKeepsBackUntilFlushOrAFullTransfer) {
   Stream stream = open_stream();
-  stream.send(DwellCommand{});  // the rooms are known from here on
+  stream.send(DwellCommand{});  // the stream then knows both rooms
   bus_.forget();
   stream.put(line_of(1));
   stream.put(feed_of(1));
@@ -177,7 +177,7 @@ TEST_F(StreamOrder, ARefusedWordIsExplainedAndClosesTheStream) {
   EXPECT_THROW(stream.finish(), StateError);
 }
 
-// A card that begins nothing more, and is not held: reported after what was planned and the margin.
+// A card that begins no further command and is not held is reported after the planned time and the margin.
 TEST_F(StreamOrder, AHangTimesOutInTheTimePlannedAndAHoldDoesNot) {
   options_.margin = 10ms;
   Stream stream = open_stream();
@@ -192,7 +192,7 @@ TEST_F(StreamOrder, AHangTimesOutInTheTimePlannedAndAHoldDoesNot) {
   EXPECT_LE(bus_.slept, 16s + 10ms + 102 * 100us);
 }
 
-// The time that a piece may take is that of its own class's ratio, the next one's of its own.
+// The allowed time of each piece depends on the ratio of its own class.
 TEST_F(StreamOrder, AHangTimesOutByTheRatiosOfTheClasses) {
   options_.margin = 10ms;
   bus_.add_engines(card_map::engines::kClasses);
@@ -248,7 +248,7 @@ TEST_F(StreamOrder, NonsenseIsALinkErrorAtOnce) {
   }
 }
 
-// A dead bus that reads zeros looks like an idle card that has begun nothing.
+// A dead bus that reads as zeros looks like an idle card that has not begun a command.
 TEST_F(StreamOrder, ZerosAreALinkErrorWithinTwoLooks) {
   Stream stream = open_stream();
   stream.send({feed_of(10), line_of(10)});
@@ -268,7 +268,7 @@ TEST_F(StreamOrder, MoreBegunThanSentIsAStateError) {
   EXPECT_LE(bus_.slept, 100us);
 }
 
-// The counters of a card with a fault are back at 0.
+// A fault resets the counters of the card to 0.
 TEST_F(StreamOrder, AFaultBetweenTheReadsOfALookIsAFault) {
   Stream stream = open_stream();
   stream.send({feed_of(100), line_of(100, 10), line_of(100, 10)});
@@ -308,7 +308,7 @@ TEST_F(StreamOrder, HonoursTheCardsEngines) {
   feed.jerk = 0;
   feed.piece_class = PieceClass::kRapid;
   EXPECT_THAT(message(feed), HasSubstr("FEED needs classes"));
-  // By its step rule too; the whole command is refused before a word of it is written.
+  // The step rule may be a reason, too. The whole command is refused before any of its words is written.
   bus_.add_engines(card_map::engines::kAccumulator);
   Card in_four = Card::open(bus_);
   Stream four(in_four);
@@ -325,7 +325,7 @@ TEST_F(StreamOrder, HonoursTheCardsEngines) {
   Card in_eight = Card::open(bus_);
   Stream eight(in_eight);
   EXPECT_NO_THROW(eight.send(arc));
-  // A class is no axis.
+  // The number of axes does not limit the class.
   bus_.values[reg::kAxes] = 1;
   bus_.add_engines(card_map::engines::kClasses);
   Card with_classes = Card::open(bus_);

@@ -1,4 +1,4 @@
-// Waits of the stream on the golden model: for how long, and what ends them.
+// Waits of the stream on the golden model: their durations and the events that end them.
 #include <gtest/gtest.h>
 
 #include "stream_commands.hpp"
@@ -25,7 +25,7 @@ TEST(StreamWaits, AStreamThatStarvesTheCardTimesOut) {
   EXPECT_LT(engine->cycles(), 20'000U);
 }
 
-// Each piece has its own time.
+// The time-out covers each piece by itself.
 TEST(StreamWaits, ManyPiecesAreNoTimeOut) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -42,7 +42,7 @@ TEST(StreamWaits, ManyPiecesAreNoTimeOut) {
   EXPECT_GE(engine->cycles(), 800'000U);
 }
 
-// 700 s each, beyond every constant: a dwell, a slow piece, and one at a sixteenth of the ratio.
+// Commands of 700 s or more, beyond every constant: a dwell, a slow piece, and a piece at 1/16 of the ratio.
 TEST(StreamWaits, LongCommandsAreNoTimeOuts) {
   sim::EngineOptions slow;
   slow.clock_hz = 10'000;
@@ -55,7 +55,7 @@ TEST(StreamWaits, LongCommandsAreNoTimeOuts) {
   stream.send({DwellCommand{7'000'000}, EndCommand{}});
   EXPECT_TRUE(stream.finish().ended);
   EXPECT_GE(engine->cycles(), 7'000'000U);
-  // 128 ticks at 2^46 / 2^64 a clock: 33.5 million clocks.
+  // 128 ticks at 2^46 / 2^64 ticks per clock take 33.5 million clocks.
   stream.send({feed_of(128, std::uint64_t{1} << 46), line_of(128, 1), EndCommand{}});
   EXPECT_TRUE(stream.finish().ended);
   EXPECT_GE(engine->cycles(), 40'000'000U);
@@ -66,7 +66,7 @@ TEST(StreamWaits, LongCommandsAreNoTimeOuts) {
   EXPECT_EQ(engine->positions()[0], 2);
 }
 
-// A rapid piece at a sixteenth of its ratio, beside feed pieces at the full one.
+// A rapid piece at 1/16 of its ratio, among feed pieces at the full ratio.
 TEST(StreamWaits, ASlowClassIsNoTimeOut) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -83,7 +83,8 @@ TEST(StreamWaits, ASlowClassIsNoTimeOut) {
   EXPECT_EQ(engine->positions()[0], 20);
 }
 
-// Who waits for the end alone does not know what runs: the slowest class's ratio counts, one of 0 is a hold.
+// wait_until_idle() does not know which piece runs. Therefore the ratio of the slowest class counts, except a ratio of
+// 0, which is a hold.
 TEST(StreamWaits, AWaitForTheEndIsStretchedByTheSlowestClass) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -99,7 +100,7 @@ TEST(StreamWaits, AWaitForTheEndIsStretchedByTheSlowestClass) {
   EXPECT_THROW(card.wait_until_idle(5ms), TimeoutError);
 }
 
-// A bus that counts what the driver does: transfers, and how its pauses end.
+// A bus that counts the driver's transfers and the ways in which its pauses end.
 class Counting final : public Bus {
  public:
   explicit Counting(Bus& bus) : bus_(bus) {}
@@ -128,7 +129,8 @@ class Counting final : public Bus {
   Bus& bus_;
 };
 
-// Long commands, of which a few fit: the waits for room end by the watermarks' interrupt, none by its time.
+// Only a few of these long commands fit into the queues. The watermarks' interrupt ends every wait for room, before its
+// time has passed.
 TEST(StreamWaits, AWatermarkEndsAWaitForRoom) {
   for (const bool watermarks : {true, false}) {
     sim::ModelOptions small;
@@ -152,13 +154,13 @@ TEST(StreamWaits, AWatermarkEndsAWaitForRoom) {
     stream.put(EndCommand{});
     EXPECT_TRUE(stream.finish().ended);
     EXPECT_EQ(engine->positions()[0], 200);
-    // 40 pieces of 8,000 clocks, and no waits beyond.
+    // 40 pieces of 8,000 clocks, without further waits.
     EXPECT_GE(engine->cycles(), 320'000U);
     EXPECT_LE(engine->cycles(), 323'000U);
   }
 }
 
-// From another thread: the class's ratio, at the stream's next look.
+// A request for the ratio of a class, which may come from another thread, takes effect at the stream's next look.
 TEST(StreamWaits, ARatioIsAskedForFromElsewhere) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -174,7 +176,7 @@ TEST(StreamWaits, ARatioIsAskedForFromElsewhere) {
   EXPECT_GE(engine->cycles(), 100'000U);
 }
 
-// Slow for long, then fast: what was slow before counts as slow.
+// A piece is slow for a long time, then fast. The slow time counts as slow.
 TEST(StreamWaits, ARatioChangedInAPieceIsNoTimeOut) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -189,8 +191,8 @@ TEST(StreamWaits, ARatioChangedInAPieceIsNoTimeOut) {
   stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});  // 160,000 clocks at full ratio
   EXPECT_TRUE(stream.finish().ended);
   EXPECT_GT(looks, 8'000U);
-  EXPECT_GE(engine->cycles(), 8'000U * 64U);  // 512,000: more than the line's and the margin together
-  // Set by somebody else, and never told to this driver.
+  EXPECT_GE(engine->cycles(), 8'000U * 64U);  // 512,000: more than the clocks of the line and the margin together
+  // Another program sets the ratio, without the knowledge of this driver.
   engine->write(reg::kRatioFeed, Card::kFullRatio / 16);
   stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});
   EXPECT_TRUE(stream.finish().ended);
@@ -198,7 +200,7 @@ TEST(StreamWaits, ARatioChangedInAPieceIsNoTimeOut) {
   EXPECT_EQ(engine->positions()[0], 20);
 }
 
-// By somebody else, between two looks at it.
+// Another program changes the ratio between two reads of the driver.
 TEST(StreamWaits, ARatioThatWasLowerForAWhileIsNoTimeOut) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
@@ -211,7 +213,7 @@ TEST(StreamWaits, ARatioThatWasLowerForAWhileIsNoTimeOut) {
     engine->write(reg::kRatioFeed, Card::kFullRatio / (lower ? 16 : 1));
   };
   Stream stream(card, options);
-  stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});  // 160,000 clocks at full ratio, and 100,000
+  stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});  // 160,000 clocks at full ratio, here 347,500
   EXPECT_TRUE(stream.finish().ended);
   EXPECT_GT(engine->cycles(), 300'000U);
   EXPECT_EQ(engine->positions()[0], 10);

@@ -11,10 +11,10 @@
 namespace trammel::driver {
 namespace {
 
-// The mathematics library's long double functions judge, where they have more digits than a double.
+// The reference is the mathematics library's long double functions, if long double has more digits than double.
 long double wide(double x) { return static_cast<long double>(x); }
 
-// No judge where it has no more.
+// False: long double has no more digits than double, so there is no reference.
 bool is_judge() { return std::numeric_limits<long double>::digits > std::numeric_limits<double>::digits; }
 
 double error(double is, long double wanted) { return static_cast<double>(std::abs(wide(is) - wanted)); }
@@ -71,7 +71,7 @@ TEST(Trigonometry, WholeQuartersAreExact) {
   EXPECT_EQ(sine_cosine(0).cosine, 1);
 }
 
-// The bits of a sweep of angles, as a number that was taken on x86-64: other hosts must come to it.
+// A hash of the bits for a range of angles, computed on x86-64. Other hosts must get the same value.
 TEST(Trigonometry, GivesTheSameBitsOnEveryHost) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   const auto add = [&](double value) {

@@ -1,4 +1,4 @@
-// How units of a card are named for people: their own names, and the engines that their features show.
+// Readable names of a card's units: their own names, and the engines that their features show.
 #include "trammel/driver/unit_table.hpp"
 
 #include <gtest/gtest.h>

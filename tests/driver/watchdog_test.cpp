@@ -1,5 +1,5 @@
-// The card's watchdog over a program: what the driver writes, and on the model that waiting programs keep it and silent
-// ones do not.
+// The card's watchdog: writes of the driver; on the model, that waiting programs restart it in time and silent programs
+// do not.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -30,10 +30,10 @@ using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// What a program that is silent for long brings.
+// Faults after a program was silent for too long.
 constexpr std::uint32_t kSilence = field::kFaultWatchdog | field::kFaultLinkLoss;
 
-// Each time goes to the watchdog and to the link's.
+// Each time is written to WATCHDOG and to LINK_TIMEOUT.
 std::vector<test::Made> both(const std::vector<std::uint32_t>& units) {
   std::vector<test::Made> made;
   for (const std::uint32_t time : units) {
@@ -43,7 +43,7 @@ std::vector<test::Made> both(const std::vector<std::uint32_t>& units) {
   return made;
 }
 
-// A card of before map 3.5 has no time of the link.
+// A card with a map before 3.5 has no LINK_TIMEOUT.
 TEST(Watchdog, AnOlderCardHasItAlone) {
   RegisterStub bus;
   bus.values[reg::kMapVersion] = (card_map::kMapVersionValue & ~0xFFFFU) | 4U;
@@ -84,7 +84,7 @@ TEST(Watchdog, LooksStartItAnewWhereItIsSet) {
   EXPECT_THAT(bus.log, ElementsAreArray(both({16, 16})));
 }
 
-// A slow link makes few looks.
+// On a slow link looks are rare.
 TEST(Watchdog, ALookAfterAQuarterOfItsTimeStartsItAnew) {
   RegisterStub bus;
   Card card = Card::open(bus);
@@ -105,7 +105,7 @@ TEST(Watchdog, AScopeEndsWithItOff) {
   EXPECT_THAT(bus.log, ElementsAreArray(made));
 }
 
-// 2 s of motion under a watchdog of 10 ms.
+// 2 s of motion with a watchdog of 10 ms.
 class WatchdogOnModel : public ::testing::Test {
  protected:
   WatchdogOnModel() : card_(Card::open(*engine_)) { card_.set_watchdog(10ms); }
@@ -116,7 +116,7 @@ class WatchdogOnModel : public ::testing::Test {
     stream.flush();
   }
 
-  static constexpr std::uint64_t kTicks = 12'500'000;  // of 16 clocks
+  static constexpr std::uint64_t kTicks = 12'500'000;  // 16 clocks each
   static sim::ModelOptions at_100_mhz() {
     sim::ModelOptions options;
     options.clock_hz = 100'000'000;
@@ -168,7 +168,7 @@ TEST_F(WatchdogOnModel, ASilentProgramLosesTheCard) {
   EXPECT_EQ(engine_->positions()[0], rest + 100'000);
 }
 
-// Commands of a program that clears and goes on at once are taken.
+// The card accepts commands of a program that clears the fault and continues at once.
 TEST_F(WatchdogOnModel, ClearingOnTheRampWaitsForItsEnd) {
   card_.set_slew_time(10ms);
   begin_line();
@@ -189,7 +189,7 @@ TEST(ClearFaults, OnARampThatDoesNotEndLeavesThem) {
   RegisterStub bus;
   Card card = Card::open(bus);
   bus.values[reg::kStatus] = field::kStatusStopping | field::kStatusFaulted;
-  bus.values[reg::kSlew] = 1U << 20;  // 1024 clocks
+  bus.values[reg::kSlew] = 1U << 20;  // a slew of 1024 clocks
   bus.forget();
   EXPECT_THROW(card.clear_faults(2ms), TimeoutError);
   EXPECT_GE(bus.slept, 3ms);
@@ -216,7 +216,7 @@ TEST_F(WatchdogOnModel, AScopeLeavesACardThatMovesToIt) {
   EXPECT_EQ(card_.read_faults(), kSilence);
 }
 
-// Periods and commands that are sent in time, without a wait of the driver's.
+// Periods and commands that are sent in time keep the watchdog alive, without a waiting call of the driver.
 TEST_F(WatchdogOnModel, SendersOfPositionsKeepIt) {
   PositionStream stream(card_, {});
   constexpr std::uint64_t kPeriod = 20'000;  // clocks
@@ -237,7 +237,7 @@ TEST_F(WatchdogOnModel, SendersOfCommandsKeepIt) {
   EXPECT_EQ(card_.read_faults(), 0U);
 }
 
-// Another program may clear what this one has left.
+// Another program can clear the faults that this one has left.
 TEST_F(WatchdogOnModel, ClearedByAProgramThatSetsNone) {
   engine_->sleep(50ms);
   Card other = Card::open(*engine_);

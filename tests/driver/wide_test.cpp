@@ -1,4 +1,4 @@
-// 128-bit integers by their laws: nothing here needs a compiler that has its own.
+// 128-bit integers against the laws of arithmetic, so that the test needs no 128-bit type of the compiler.
 #include "trammel/driver/wide.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@ namespace trammel::driver {
 namespace {
 
 Uint128 any() { return {*rc::gen::arbitrary<std::uint64_t>(), *rc::gen::arbitrary<std::uint64_t>()}; }
-// Of any length.
+// A number of any length in bits.
 std::uint64_t any64() { return *rc::gen::arbitrary<std::uint64_t>() >> *rc::gen::inRange(0, 64); }
 
 TEST(Wide, Examples) {
@@ -30,7 +30,7 @@ TEST(Wide, Examples) {
 RC_GTEST_PROP(WideProperty, ProductsAddUpByDigits, ()) {
   const std::uint64_t a = any64();
   const std::uint64_t b = any64();
-  // Digits of 16 bits, one after the other: another way than the class's.
+  // Multiplication by digits of 16 bits, a method that differs from that of the class.
   Uint128 sum;
   for (unsigned digit = 0; digit < 4; ++digit) {
     const std::uint64_t part = b >> (16 * digit) & 0xFFFF;
@@ -76,7 +76,7 @@ RC_GTEST_PROP(IncrementProperty, IsTheNearest, ()) {
   const auto ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << *rc::gen::inRange(1, 41));
   const auto pulses = *rc::gen::inRange<std::uint64_t>(0, ticks + 1);
   const std::uint64_t share = rounded_share(pulses, ticks);
-  // 2^41 p + N - 1 >= 2 N share >= 2^41 p - N + 1, halves up.
+  // 2^41 p + N >= 2 N share >= 2^41 p - N + 1: halves are rounded up.
   const Uint128 twice = Uint128::product(2 * share, ticks);
   const Uint128 exact = Uint128(pulses) << 41;
   RC_ASSERT(twice <= exact + Uint128(ticks));

@@ -1,4 +1,4 @@
-// What errors the CRC lets through, for the lengths that frames have: the page's table.
+// Errors that the CRC does not detect, for the lengths of frames: the table of the page.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using namespace trammel::frames;
 
-// What a wrong bit does to the register, by its distance from the frame's end. It does not depend on the data.
+// The effect of a wrong bit on the register, by its distance from the end of the frame. It does not depend on the data.
 std::vector<std::uint32_t> effects(std::size_t bits) {
   std::vector<std::uint32_t> effect{1};
   while (effect.size() < bits) {
@@ -25,15 +25,15 @@ std::vector<std::uint32_t> effects(std::size_t bits) {
   return effect;
 }
 
-// The effects of all sets of `size` bits, `sum` added to each.
+// The effects of all sets of `size` bits, each combined with `sum`.
 template <class Take>
 void sets(const std::vector<std::uint32_t>& effect, unsigned size, std::size_t from, std::uint32_t sum, Take& take) {
   if (size == 0) return take(sum);
   for (std::size_t i = from; i < effect.size(); ++i) sets(effect, size - 1, i + 1, sum ^ effect[i], take);
 }
 
-// Whether every error of 2 * half + 1 bits or fewer shows: then the sets of up to `half` bits have effects of their
-// own, which no set of one bit more has.
+// True when every error of at most 2 * half + 1 bits is detected. This is so if all sets of up to `half` bits have
+// different effects, and no set of half + 1 bits has one of these effects.
 bool sees(std::size_t bytes, unsigned half) {
   const std::vector<std::uint32_t> effect = effects(8 * bytes);
   std::vector<std::uint32_t> small;
@@ -57,7 +57,7 @@ TEST(CrcErrors, FiveWrongBitsAreSeenInAReplyWithoutWords) {
   EXPECT_FALSE(sees(40, 2)) << "so the search can find one";
 }
 
-// The share of frames of so many bytes in which more than `seen` bits are wrong and the CRC is right all the same.
+// Share of frames of `bytes` bytes with more than `seen` wrong bits and a matching CRC.
 double let_through(unsigned bytes, unsigned seen, double bit_error_rate) {
   const double bits = 8.0 * bytes;
   double sum = 0;

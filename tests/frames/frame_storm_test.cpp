@@ -1,4 +1,4 @@
-// The endpoint behind a bad link: whatever happens to frames, each request runs once and whole, or not at all.
+// The endpoint behind a bad link: with any damage to frames, each request runs once and completely, or not at all.
 #include "frame_storm.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using namespace trammel::frames;
 using trammel::test::FrameStorm;
 
-// 10^6 frames, 10^7 in the long run.
+// 10^6 frames, or 10^7 in the long run.
 std::uint64_t storm_length() { return std::getenv("TRAMMEL_LONG") == nullptr ? 1'000'000 : 10'000'000; }
 
 enum class Flaw { None, AccessTwice, WordLost, RepeatRuns };
@@ -29,7 +29,7 @@ FrameStorm::Counts storm(std::uint64_t seed, std::uint64_t frames, Flaw flaw = F
     if (flawed && flaw == Flaw::AccessTwice) host->access(write, address, data);
     return Endpoint::Answer{answer.refused, answer.data};
   });
-  // A card that forgets that it has run a request.
+  // A card that forgets that it has already run a request.
   std::optional<Endpoint> before;
   const auto card = [&](const Bytes& bytes) {
     Bytes out;
@@ -49,7 +49,7 @@ TEST(FrameStorm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
   const std::uint64_t frames = storm_length();
   const FrameStorm::Counts counts = storm(1, frames);
   EXPECT_GE(counts.frames, frames);
-  // Enough of everything for the test to mean something.
+  // Enough events of each kind for a meaningful test.
   EXPECT_GT(counts.requests, frames / 4);
   EXPECT_GT(counts.damaged, frames / 4);
   EXPECT_GT(counts.repeated, frames / 50);
@@ -64,8 +64,8 @@ TEST(FrameStorm, FindsACardWithAFlaw) {
   }
 }
 
-// Frames of the right length with random contents: a CRC passes by chance once in 2^32. So many do not come; but each
-// 16 of its bits pass by chance as well, and as often as they should.
+// Frames of the right length with random contents. A CRC passes by chance once in 2^32, which is too rare for this
+// test. Each half of 16 bits also passes by chance, and must do so at the expected rate.
 TEST(Garbage, PassesTheCrcAsOftenAsChanceSays) {
   std::mt19937_64 random(3);
   const unsigned scale = std::getenv("TRAMMEL_LONG") == nullptr ? 1 : 16;
@@ -84,18 +84,18 @@ TEST(Garbage, PassesTheCrcAsOftenAsChanceSays) {
     high += difference >> 16 == 0 ? 1 : 0;
     both += difference == 0 ? 1 : 0;
   }
-  // 64 of each are expected, or 1,024: five standard deviations.
+  // 64 of each are expected (1,024 in the long run), within five standard deviations.
   const double due = 64.0 * scale;
   EXPECT_NEAR(low, due, 5 * std::sqrt(due));
   EXPECT_NEAR(high, due, 5 * std::sqrt(due));
-  EXPECT_EQ(both, 0U);  // 0.001 are expected, or 0.016
+  EXPECT_EQ(both, 0U);  // 0.001 are expected, or 0.016 in the long run
   std::printf(
       "%u frames of random contents: lower half of the CRC good in %u, upper half in %u (2^-16 of them: %.0f), both in "
       "%u (2^-32: %.3f)\n",
       frames, low, high, due, both, std::ldexp(frames, -32));
 }
 
-// Noise with ends in it, with every byte as likely as the next: nothing runs, the next frame does.
+// Noise with uniformly distributed bytes, which contains END bytes: no access is made, and the next frame works.
 TEST(Garbage, IsNoFrame) {
   std::mt19937_64 random(4);
   std::uint64_t accesses = 0;

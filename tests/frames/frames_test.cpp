@@ -1,4 +1,4 @@
-// Codec, session and endpoint, without damage; the page's test vectors.
+// Codec, session and endpoint without damage, and the test vectors of the page.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -24,12 +24,12 @@ TEST(Crc32, CheckValueAndResidue) {
   EXPECT_TRUE(crc.whole());
 }
 
-// Every error of up to four bits in a frame of the longest request leaves the register at another value than that of a
-// whole one. An error's effect does not depend on the data, so it is enough that no four bits' effects cancel: of
-// pairs.
+// Every error of up to four bits in a frame of the longest reply must change the final value of the register. The
+// effect of an error does not depend on the data. It is therefore enough that the effects of no four bits cancel, which
+// is checked with pairs.
 TEST(Crc32, FourWrongBitsAreSeenInTheLongestFrames) {
   const std::size_t bits = 8 * (kMaxReplyBody + kCrcBytes);
-  // The effect of one bit, so many bits before the end.
+  // The effect of one bit, indexed by its distance from the end in bits.
   std::vector<std::uint32_t> effect{1};
   for (std::size_t i = 1; i < bits; ++i) {
     effect.push_back(effect.back() >> 1 ^ ((effect.back() & 1) != 0 ? 0xEDB88320U : 0));
@@ -39,8 +39,8 @@ TEST(Crc32, FourWrongBitsAreSeenInTheLongestFrames) {
     ASSERT_NE(effect[i], 0U);
     for (std::size_t j = 0; j < i; ++j) pairs.push_back(effect[i] ^ effect[j]);
   }
-  // Three bits: a pair that looks like one. Four: two pairs alike, or two with a bit in common, which is two wrong
-  // bits.
+  // Three bits would be a pair with the effect of one bit. Four bits would be two equal pairs; two pairs with a bit in
+  // common are two wrong bits.
   std::sort(pairs.begin(), pairs.end());
   EXPECT_EQ(std::adjacent_find(pairs.begin(), pairs.end()), pairs.end());
   EXPECT_NE(pairs.front(), 0U);
@@ -199,7 +199,7 @@ TEST(Endpoint, WhatWasReadIsKeptForARepeat) {
   bench.memory[0x040 / 4] = 2;
   const std::optional<Reply> again = bench.send(request);
   EXPECT_EQ(again->data, (std::vector<std::uint32_t>{7, 0}));
-  EXPECT_EQ(again->state.status(), 2U);  // the state is that of now
+  EXPECT_EQ(again->state.status(), 2U);  // the state is the present one
 }
 
 TEST(Endpoint, AConnectionRunsNothingOfTheOneBefore) {
@@ -211,7 +211,7 @@ TEST(Endpoint, AConnectionRunsNothingOfTheOneBefore) {
   EXPECT_EQ(reply->result, Result::WrongEpoch);
   EXPECT_EQ(reply->epoch, first + 1);
   EXPECT_EQ(reply->last, 1);
-  // The reply to what ran last is still there for the new connection.
+  // The new connection can still get the reply to the last executed request.
   EXPECT_EQ(bench.send(write_request(1, static_cast<std::uint16_t>(first + 1), {9}))->made, 1);
   EXPECT_EQ(bench.writes, 1U);
 }
@@ -223,8 +223,8 @@ TEST(Endpoint, MalformedRequestsAreToldAndDoNothing) {
   const Bytes bodies[] = {
       {0x23, 1, 1, 0, low, 0, 0x84, 1, 1, 2, 3, 4},  // an unknown bit
       {0x02, 0, 1, 0, low, 0, 0x84, 1},              // no words
-      {0x02, kMaxWords + 1, 1, 0, low, 0, 0x84, 1},  // more than a reply holds
-      {0x02, 1, 1, 0, low, 0, 0x85, 1},              // no word's address
+      {0x02, kMaxWords + 1, 1, 0, low, 0, 0x84, 1},  // more words than a reply holds
+      {0x02, 1, 1, 0, low, 0, 0x85, 1},              // not the address of a word
       {0x02, 1, 1, 0, low, 0, 0x84, 0x11},           // outside the window
       {0x00, 1, 1, 0, low, 0, 0, 0},                 // a question with words
       {0x03, 0, 1, 0, low, 0, 0x84, 1},
@@ -238,7 +238,7 @@ TEST(Endpoint, MalformedRequestsAreToldAndDoNothing) {
     EXPECT_EQ(reply->number, 1);
     EXPECT_EQ(reply->last, 0);
   }
-  // A length that is not that of its count is no frame at all.
+  // A frame whose length does not fit its count is ignored.
   for (const Bytes& body : {Bytes{3, 2, 1, 0, low, 0, 0x84, 1, 1, 2, 3, 4}, Bytes{0, 0, 0, 0, 0, 0, 0}, Bytes{0}}) {
     Bytes stream;
     append_frame(stream, body);
@@ -247,7 +247,7 @@ TEST(Endpoint, MalformedRequestsAreToldAndDoNothing) {
   EXPECT_EQ(bench.writes, 0U);
 }
 
-// The page's vectors: rows of a table, `| what | bytes in hexadecimal |`, taken in order by one card.
+// Test vectors on the page: table rows `| what | bytes in hexadecimal |`, which one card gets in order.
 TEST(FramesPage, VectorsAreWhatACardSays) {
   std::ifstream page(TRAMMEL_FRAMES_PAGE);
   ASSERT_TRUE(page);

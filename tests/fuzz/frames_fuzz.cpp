@@ -1,5 +1,5 @@
-// The parsers of both sides with arbitrary bytes. The first byte says how the others are meant: as a stream, or as the
-// body of a frame whose CRC is made good, so that the parsers behind it are reached.
+// The parsers of host and card with arbitrary bytes. Bit 0 of the first byte selects the meaning of the others: 0: a
+// stream; 1: the body of a frame, which gets a valid CRC so that the parsers after the CRC check are reached.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -16,7 +16,7 @@ using namespace trammel::frames;
   std::abort();
 }
 
-// What is taken for a request or a reply is, written again, the same bytes.
+// A body that is parsed as a request or a reply must encode to the same bytes again.
 void check_request(const Bytes& body) {
   const std::optional<ReceivedRequest> received = parse_request(body);
   if (!received || received->malformed) return;

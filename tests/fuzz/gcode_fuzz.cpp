@@ -1,5 +1,5 @@
-// Programs made of anything: the reader neither crashes nor hangs, says one line about what is wrong, makes the same of
-// a program whatever the chunks in which it comes, and leaves out nothing that could be a motion.
+// Arbitrary bytes as programs. The reader must not crash or hang. It reports an error in one line. Its result does not
+// depend on the chunks in which the program arrives. It never drops words that could be a motion.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -119,7 +119,7 @@ std::vector<std::string> split(std::string_view program) {
   return lines;
 }
 
-// A line without comments and blanks, in an own reading; nothing of a deleted one.
+// A line without comments and blanks, by a second implementation of the rules. Empty for a deleted line ('/').
 std::string bare(const std::string& line) {
   std::string text;
   bool comment = false;
@@ -135,7 +135,7 @@ std::string bare(const std::string& line) {
   return !text.empty() && text.front() == '/' ? std::string{} : text;
 }
 
-// Lines that are left out: of them nothing is read.
+// True for a line that the reader leaves out as a whole.
 bool is_left_out(std::string text) {
   static const std::set<std::string> kWords = {"M73",  "M104", "M105", "M106", "M107", "M109", "M110", "M115", "M117",
                                                "M140", "M190", "M201", "M202", "M203", "M204", "M205", "G29",  "M17",
@@ -161,7 +161,7 @@ bool is_left_out(std::string text) {
   return kWords.count(word) != 0;
 }
 
-// Of a program that was accepted: words that a reader might drop or split in silence.
+// Checks an accepted program for words that a reader might drop or split without a message.
 void check_nothing_dropped(std::string_view program, std::size_t end_line) {
   bool in_program = false;
   bool closed = false;
@@ -170,7 +170,7 @@ void check_nothing_dropped(std::string_view program, std::size_t end_line) {
     const std::string written = ++number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0 ? line.substr(3) : line;
     const std::string text = bare(written);
     if (number > end_line && !closed) {
-      return;  // behind M2 or M30 nothing is read
+      return;  // the reader stops at M2 or M30
     }
     if (text.empty()) {
       continue;
@@ -181,10 +181,10 @@ void check_nothing_dropped(std::string_view program, std::size_t end_line) {
     require(!closed || mark, "words behind the last '%' are dropped");
     closed = closed || (mark && in_program);
     in_program = true;
-    // Expressions have operators such as EQ, and names.
+    // Operators such as EQ and names in expressions contain letters that are no words.
     if (text.find_first_of("[<") != std::string::npos || is_left_out(written)) continue;
     for (std::size_t i = 1; i < text.size(); ++i) {
-      // Blanks between a number and e make it an axis word: look at the line as it is written.
+      // With blanks before it, 'e' is an axis word. Therefore the line is searched as it is written.
       const bool digit = line.find(std::string(1, text[i - 1]) + "e") != std::string::npos && text[i - 1] >= '0' &&
                          text[i - 1] <= '9' && text[i] == 'e';
       require(!digit || line.find('(') != std::string::npos || line.find(';') != std::string::npos,

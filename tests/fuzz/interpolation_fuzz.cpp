@@ -1,5 +1,5 @@
-// Drives every interpolator with arbitrary bytes: refused with a reason, or walked by unit steps to the exact end
-// within a bound. Built with libFuzzer, ASan and UBSan (CMakeLists.txt); an aborted run leaves the bytes that did it.
+// Arbitrary bytes for every interpolator. A curve is refused with a reason, or walked in unit steps to its exact end
+// within a bound. Built with libFuzzer, ASan and UBSan (CMakeLists.txt). An aborted run saves the bytes that caused it.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace trammel::interpolation;
 
-// The bytes as numbers; zeros when they run out.
+// Takes numbers from the bytes; zeros after their end.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -26,7 +26,7 @@ class Bytes {
     size_ -= count;
     return value;
   }
-  // Three kinds of number: small, where arcs are short and often valid; middling; anything at all.
+  // `kind` 0: small numbers, for which arcs are short and often valid; 1: medium numbers; 2: any number.
   std::int64_t number(unsigned kind) {
     if (kind == 0) return take<std::int8_t>() / 4;
     if (kind == 1) return take<std::int16_t>() / 16;
@@ -43,7 +43,8 @@ class Bytes {
   std::abort();
 }
 
-// An end near the start's circle, from the bytes: points taken at random hardly ever lie on one.
+// An end point on the circle of `start` or within 1 pulse of it, chosen by the bytes. Random points hardly ever lie on
+// a circle.
 Point on_circle(const Point& centre, const Point& start, Bytes& bytes) {
   const std::int64_t x = start.x - centre.x;
   const std::int64_t y = start.y - centre.y;
@@ -57,7 +58,7 @@ Point on_circle(const Point& centre, const Point& start, Bytes& bytes) {
   return end;
 }
 
-// Differences of arbitrary 64-bit numbers overflow here, not in the library: bounded first.
+// Bounds the coordinates: differences of arbitrary 64-bit numbers would overflow in this file, not in the library.
 Point bounded(Point p) { return {p.x % (kMaxCoordinate + 2), p.y % (kMaxCoordinate + 2)}; }
 
 Curve take_curve(Bytes& bytes, unsigned kind) {
@@ -102,7 +103,8 @@ Position end_of(const Curve& curve) {
   return {p.x, p.y, 0, 0};
 }
 
-// No method takes more steps: a line each unit step once, an arc what arc_end.hpp derives from twice its extent.
+// Upper bound of the steps of every method. A line makes each unit step once. An arc makes at most twice the bound that
+// arc_end.hpp derives, for twice the extent if it is a circle.
 std::uint64_t bound_of(const Curve& curve) {
   if (const auto* line = std::get_if<Line>(&curve)) return kMaxAxes * longest_axis(*line);
   const Arc& arc = std::get<Arc>(curve);
@@ -112,7 +114,7 @@ std::uint64_t bound_of(const Curve& curve) {
 }
 
 void check_walk(AnyInterpolator walk, const Curve& curve) {
-  // Long walks are cut off here: their first steps meet the widths.
+  // Long walks end here; their first steps already reach the widths of the registers.
   constexpr std::uint64_t kMaxSteps = 3000;
   const std::uint64_t bound = bound_of(curve);
   Position expected = start_of(curve);

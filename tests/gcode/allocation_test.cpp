@@ -1,4 +1,4 @@
-// The reader allocates nothing once it runs: the global operator new counts.
+// The reader must not allocate memory while it runs. The global operator new counts.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace trammel::gcode {
 namespace {
 
-// Every kind of line, many times.
+// Repeats lines of every kind.
 class EndlessLines final : public LineSource {
  public:
   bool next(std::string_view& line) override {

@@ -1,4 +1,4 @@
-// G2 and G3: centres, planes, and what is refused.
+// G2 and G3: centres, planes and refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -74,8 +74,8 @@ TEST(GcodeArc, InverseTimeAndInches) {
 }
 
 TEST(GcodeArc, RadiusRule) {
-  EXPECT_EQ(arc_refusal("G2 X10 Y10.004 I10"), "accepted");    // below 0.005 mm
-  EXPECT_EQ(arc_refusal("G2 X100 Y100.09 I100"), "accepted");  // below 0.1 %
+  EXPECT_EQ(arc_refusal("G2 X10 Y10.004 I10"), "accepted");    // error below 0.005 mm
+  EXPECT_EQ(arc_refusal("G2 X100 Y100.09 I100"), "accepted");  // error below 0.1 %
   EXPECT_THAT(arc_refusal("G2 X10 Y10.02 I10"), HasSubstr("not on its circle"));
   EXPECT_THAT(arc_refusal("G2 X100 Y100.11 I100"), HasSubstr("not on its circle"));
   EXPECT_EQ(arc_refusal("G2 X1000 Y1000.49 I1000"), "accepted");
@@ -105,7 +105,7 @@ TEST(GcodeArc, Refusals) {
   EXPECT_EQ(arc_refusal("G2 X10 Y10 I10 P0"), "P0: an arc makes a whole number of turns, 1 to 10000");
 }
 
-// Axes outside the plane go along: a helix. P counts all turns that it begins.
+// Axes outside the plane move along, which makes a helix. P counts every turn that the arc begins.
 TEST(GcodeArc, Helices) {
   const Motion thread = last_arc("G2 X10 Y10 Z-3 E1 I10 P3");
   EXPECT_EQ(thread.kind, MotionKind::kArc);
@@ -121,10 +121,10 @@ TEST(GcodeArc, Helices) {
   const Motion side = last_arc("G18 G3 X20 Y7 Z0 I10 K0");
   EXPECT_EQ(side.target[1], 7);
   EXPECT_EQ(last_arc("G2 X5 I2.5\nX10 I2.5 P2").turns, 1U) << "G2 is modal";
-  // Where the line has another use of P, that takes it.
+  // If another word of the line uses P, then P belongs to that word.
   EXPECT_EQ(last_arc("G2 I5 G64 P2").turns, 0U);
   EXPECT_EQ(last_arc("G2 I5 G4 P2").turns, 0U);
-  // G61 has none.
+  // G61 does not use P.
   EXPECT_EQ(last_arc("G2 I5 G61 P2").turns, 1U);
   EXPECT_EQ(last_arc("G2 I5 G61.1 P3").turns, 2U);
 }

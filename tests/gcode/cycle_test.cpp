@@ -51,7 +51,7 @@ TEST(Cycle, DrillsAndRetractsToRByDefault) {
 }
 
 TEST(Cycle, G98RetractsToWhereTheSeriesBegan) {
-  // G82 goes on with the series that G81 began, and rises to its R first.
+  // G82 continues the series that G81 began; it first rises to its own R.
   expect_steps("G99 G81 X1 Z-1 R2\nG98 G82 X3 Z-2 R3 P0.5", {{kRapid, 1, 0, 10},
                                                              {kRapid, 1, 0, 2},
                                                              {kFeed, 1, 0, -1},
@@ -105,7 +105,8 @@ TEST(Cycle, RepeatsInIncrements) {
   expect_steps("G91 G98 G81 X1 Y2 Z-6 R-3 L3", steps);
 }
 
-// A hole from `from` in X, at level `level`: rapid to the place, rapid to R, feed to the bottom, rapid out.
+// Adds the motions of a hole at `x`, starting at level `level`: rapid to the place, rapid to R, feed to the bottom,
+// rapid out.
 void add_hole(std::vector<Step>& steps, double x, double level, double retract, double bottom, double clear) {
   steps.push_back({kRapid, x, 0, level});
   if (level != retract) steps.push_back({kRapid, x, 0, retract});
@@ -132,16 +133,17 @@ TEST(Cycle, UnderG91NewLevelsCountFromTheSameStart) {
   add_hole(steps, 1, 10, 6, 3, 6);
   add_hole(steps, 2, 6, 5, 2, 5);
   add_hole(steps, 3, 5, 5, 4, 5);
-  steps.push_back({kRapid, 3, 0, 8});  // G85
+  steps.push_back({kRapid, 3, 0, 8});  // the hole of G85
   steps.push_back({kRapid, 4, 0, 8});
   steps.push_back({kFeed, 4, 0, 6});
   steps.push_back({kFeed, 4, 0, 8});
-  add_hole(steps, 5, 8, 7, 6, 7);  // a series of its own, from level 8
+  add_hole(steps, 5, 8, 7, 6, 7);  // a new series, from level 8
   expect_steps("G91 G81 X1 Z-3 R-4\nX1 R-5\nX1 Z-1\nG85 X1 Z-2 R-2\nG80\nG81 X1 Z-1 R-1", steps);
 }
 
 TEST(Cycle, TheLevelWhereASeriesBeganIsACoordinate) {
-  // The tool gets longer by 2: the series began at Z10 and goes on from Z8, in machine coordinates from 12 and 10.
+  // The tool gets longer by 2. In the program's coordinates the series began at Z10 and continues from Z8. In machine
+  // coordinates these levels are 12 and 10.
   std::vector<Step> steps;
   add_hole(steps, 1, 10, 6, 3, 10);
   add_hole(steps, 2, 10, 8, 5, 12);
@@ -168,7 +170,7 @@ TEST(Cycle, AnotherPlaneBeginsAnotherSeries) {
   EXPECT_EQ(cycle_refusal("G81 X1 Z-1 R2\nG18 X2"), "4: G81 needs the bottom of its holes");
 }
 
-// Levels that count from where a probe ended are not known before the run.
+// Levels relative to the end of a probe are unknown before the run.
 TEST(Cycle, LevelsBehindAProbeAreLater) {
   machine::Machine machine = machine::default_machine();
   machine.probe.input = 0;

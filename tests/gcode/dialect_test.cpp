@@ -1,4 +1,4 @@
-// Words of slicers, printers' firmware and other controllers: taken, left out, or refused with what to do.
+// Words of slicers, printers' firmware and other controllers: accepted, left out, or refused with advice.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -216,7 +216,7 @@ TEST(Dialect, RefusalsSayWhatToDo) {
   EXPECT_EQ(refusal("G59.4"), "1: unsupported word 'G59.4': no such word here: write what it stands for");
 }
 
-// Other controllers move by these, or read the lines behind them in another way.
+// On other controllers these words move the machine, or change the meaning of the lines after them.
 TEST(Dialect, MotionsOfOtherControllersAreNeverLeftOut) {
   for (const char* word : {"G35",  "G36",  "G47",  "G60",     "G63",  "G72",  "G75",  "G107", "G112", "G113",
                            "G141", "G143", "G150", "G154 P1", "G184", "G234", "G254", "G380", "G425", "M97 P5"}) {

@@ -1,4 +1,4 @@
-// Parameters and expressions, against the mathematics library and what LinuxCNC's documentation says.
+// Parameters and expressions, against the mathematics library and LinuxCNC's documentation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// What an X word has as its value.
+// Value of an X word.
 double value_of(const std::string& expression, const std::string& before = "") {
   const Reading program = read_text(before + "\nG0 X" + expression);
   EXPECT_FALSE(program.error) << describe(*program.error);
-  // A motion to where the machine stands is one all the same.
+  // A motion to the present position is reported as a motion, too.
   return program.motions.size() < 2 ? std::nan("") : program.motions[program.motions.size() - 2].target[0];
 }
 

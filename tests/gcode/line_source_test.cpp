@@ -1,4 +1,4 @@
-// Lines of programs, however the bytes come.
+// Lines of programs, for any chunks in which the bytes arrive.
 #include "trammel/gcode/line_source.hpp"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ std::vector<std::string> lines_of(const std::string& text, std::size_t chunk = 6
   return all(source);
 }
 
-// Written another way: byte by byte.
+// Reference implementation, byte by byte.
 std::vector<std::string> plainly_split(const std::string& text) {
   std::vector<std::string> lines;
   std::string line;
@@ -165,7 +165,7 @@ TEST(LineSource, WhatIsThrownMeanwhileComesThrough) {
   EXPECT_THROW(source.next(line), std::runtime_error);
 }
 
-// A signal every 2 ms; the pipe is silent until ten have come.
+// A signal arrives every 2 ms. The pipe stays silent until ten signals have arrived.
 TEST(LineSource, SignalsDoNotEndAWait) {
   static std::atomic<int> signals;
   struct sigaction counting {};
@@ -179,7 +179,7 @@ TEST(LineSource, SignalsDoNotEndAWait) {
     int calls = 0;
     if (meanwhile) source.set_meanwhile([&] { ++calls; });
     std::thread writer([&] {
-      sigset_t alarm;  // for the other thread alone
+      sigset_t alarm;  // only the reading thread receives SIGALRM
       sigemptyset(&alarm);
       sigaddset(&alarm, SIGALRM);
       pthread_sigmask(SIG_BLOCK, &alarm, nullptr);

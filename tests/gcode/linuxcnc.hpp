@@ -1,5 +1,5 @@
-// Programs through LinuxCNC's own interpreter, rs274, for tests: its canonical motions against the reader's, in machine
-// coordinates.
+// Runs programs in LinuxCNC's own interpreter, rs274, for tests. Compares its canonical motions with the motions of the
+// reader, in machine coordinates.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 namespace trammel::gcode::linuxcnc {
 
 constexpr double kMmPerInch = 25.4;
-// What rs274 prints has four decimals: of an inch, after two offsets.
+// Tolerance, mm. rs274 prints coordinates and offsets with four decimals, of an inch; two offsets add to a coordinate.
 constexpr double kPrinted = 0.008;
 
 struct Canonical {
@@ -29,12 +29,12 @@ struct Canonical {
   std::array<double, 3> end{};     // mm, machine coordinates
   std::array<double, 2> centre{};  // mm, machine coordinates, in the plane's order
   bool clockwise = false;
-  int turns = 0;    // begun
+  int turns = 0;    // turns that the arc begins
   double feed = 0;  // mm/min
   double seconds = 0;
 };
 
-// Runs a command and gives back what it prints.
+// Runs a command and returns its output.
 inline std::string output_of(const std::string& command) {
   std::string text;
   std::FILE* const pipe = ::popen(command.c_str(), "r");
@@ -45,7 +45,7 @@ inline std::string output_of(const std::string& command) {
   return text;
 }
 
-// Skips its tests where rs274 is missing. With TRAMMEL_REQUIRE_LINUXCNC set they fail there.
+// Skips its tests if rs274 is missing. If TRAMMEL_REQUIRE_LINUXCNC is set, the tests fail instead.
 class LinuxcncTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -90,7 +90,7 @@ inline std::vector<double> arguments_of(const std::string& call) {
   return numbers;
 }
 
-// Makes machine coordinates of canonical calls.
+// Converts canonical calls to motions in machine coordinates.
 class Canon {
  public:
   std::vector<Canonical> steps;
@@ -137,7 +137,8 @@ class Canon {
   void go(MotionKind kind, const std::vector<double>& a) {
     arrive(kind, {machine(0, a[0]), machine(1, a[1]), machine(2, a[2])});
   }
-  // End and centre in the plane's order, turns with a sign (counter-clockwise above 0), the end on the third axis.
+  // Arguments of ARC_FEED: end and centre in the plane's order, turns (above 0: counter-clockwise), end on the third
+  // axis.
   void arc(const std::vector<double>& a) {
     constexpr std::size_t kAxes[3][3] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};
     const auto& axes = kAxes[plane_];
@@ -160,7 +161,7 @@ class Canon {
   Place here_{};
 };
 
-// Both leave out motions of no length and stops that are not dwells.
+// Removes motions without length and dwells of 0 s. Arcs stay, because a full circle ends at its start.
 inline std::vector<Canonical> without_stills(const std::vector<Canonical>& steps) {
   std::vector<Canonical> moving;
   std::array<double, 3> here{};
@@ -186,17 +187,17 @@ inline std::vector<Canonical> read_by_linuxcnc(const std::string& text, bool& en
   const Folder folder;
   const std::string program = folder.write("program.ngc", text);
   const std::string variables = folder.write("program.var", "");
-  // Its machine is one in inches.
+  // The machine of rs274 is in inches.
   const std::string tools = folder.write(
       "tool.tbl", fmt::format("T1 P1 Z{:.10f} D0.1\nT2 P2 Z{:.10f} D0.1\n", 12.5 / kMmPerInch, 20 / kMmPerInch));
-  // It writes its tool table into HOME, which tests that run at the same time must not share.
+  // rs274 writes its tool table into HOME. Tests that run in parallel must not share this directory.
   const std::string printed = output_of(
       fmt::format("HOME='{}' rs274 -g -t '{}' -v '{}' '{}' 2>/dev/null", folder.path(), tools, variables, program));
   Canon canon;
   for (std::size_t at = 0; at < printed.size();) {
     const std::size_t end = std::min(printed.find('\n', at), printed.size());
     const std::string line = printed.substr(at, end - at);
-    const std::size_t number = line.find(" N");  // of the line, in seven columns
+    const std::size_t number = line.find(" N");  // line number, in seven columns
     if (number != std::string::npos && line.size() > number + 8) canon.call(line.substr(number + 8));
     at = end + 1;
   }
@@ -242,7 +243,7 @@ inline void expect_same(const std::vector<Canonical>& ours, const std::vector<Ca
   }
 }
 
-// `simplify` changes both lists before they are compared.
+// Applies `simplify` to both lists before the comparison.
 template <class Simplify>
 void expect_same(const std::string& text, Simplify simplify) {
   bool ended = false;

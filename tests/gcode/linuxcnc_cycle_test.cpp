@@ -17,8 +17,8 @@ struct CyclePlane {
   char first, second, normal;
 };
 constexpr CyclePlane kCyclePlanes[] = {{"G17", 'X', 'Y', 'Z'}, {"G18", 'Z', 'X', 'Y'}, {"G19", 'Y', 'Z', 'X'}};
-// With the words that each needs beside R and the bottom. Here Q never divides a hole's depth: LinuxCNC sums up its
-// pecks, and by rounding it may peck once more at the bottom.
+// Cycles with the words that they need besides R and the bottom. Q never divides the depth of a hole: LinuxCNC adds up
+// its pecks, so by rounding it may make one more peck at the bottom.
 constexpr const char* kCycles[] = {"G73 Q1.373", "G81", "G82 P0.5", "G83 Q1.717", "G85", "G89 P0.2"};
 
 class LinuxcncCycle : public LinuxcncTest {};
@@ -44,7 +44,7 @@ TEST_F(LinuxcncCycle, HasTheSameMotionsInAllModes) {
   expect_same(text + "M2\n");
 }
 
-// Dwells of this length stand between the lines of random series: there both are at the same place.
+// Length of the dwells between the lines of random series, s. At a dwell both interpreters are at the same place.
 constexpr double kBetweenLines = 0.123;
 
 // A series begins at a random place; each further line may change modes, levels, cycle and offsets.
@@ -84,8 +84,8 @@ class RandomCycles {
     if (one_in(4)) return one_in(2) ? "G55" : "G54";
     return fmt::format("{} X{} Y{} Z{}", words[number(0, 3)], coordinate(-3, 3), coordinate(-3, 3), coordinate(-3, 3));
   }
-  // `whole`: names a cycle and all that it needs. R is at no lower number than 0 and the bottom, so that the bottom is
-  // below R both as a coordinate and as an increment.
+  // `whole`: the line has a cycle and all words that it needs. The bottom is at most -5 and R at least -4, so the
+  // bottom is below R both as a coordinate and as an increment.
   std::string line(bool whole) {
     std::string text = whole ? kCycles[number(0, 5)] : "";
     text += fmt::format(" {}{}", plane_.first, coordinate(-9, 9));
@@ -100,8 +100,8 @@ class RandomCycles {
   CyclePlane plane_{};
 };
 
-// Where a line's R is not the level at which the line before ended, the two approach the first hole differently
-// (docs/user/g-code.md): of the rapids behind a pause only the last counts.
+// If a line's R is not the level at which the line before ended, the two interpreters approach the first hole
+// differently (docs/user/g-code.md). Therefore only the last one of the rapids after each pause stays.
 std::vector<Canonical> without_approaches(const std::vector<Canonical>& steps) {
   const auto rapid = [&](std::size_t i) { return i < steps.size() && steps[i].kind == MotionKind::kTraverse; };
   std::vector<Canonical> rest;
@@ -124,7 +124,7 @@ TEST_F(LinuxcncCycle, HasTheSameHolesInRandomSeries) {
   }
 }
 
-// LinuxCNC's motions from X0 Y0 Z5 on.
+// End points of LinuxCNC's motions after X0 Y0 Z5.
 std::vector<std::string> linuxcnc_ends(const std::string& text) {
   bool ended = false;
   std::vector<std::string> ends;
@@ -136,7 +136,7 @@ std::vector<std::string> linuxcnc_ends(const std::string& text) {
   return ends;
 }
 
-// What the page of the G-code words says about LinuxCNC's cycles.
+// Differences of LinuxCNC's cycles, as docs/user/g-code.md describes them.
 TEST_F(LinuxcncCycle, DiffersWhereThePageSaysSo) {
   using Ends = std::vector<std::string>;
   EXPECT_EQ(linuxcnc_ends("G81 X1 Z-1 R2\nG98 X3"),

@@ -1,4 +1,4 @@
-// The same programs through LinuxCNC's own interpreter, where it is installed.
+// The same programs in LinuxCNC's own interpreter, if it is installed.
 #include "linuxcnc.hpp"
 
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ TEST_F(Linuxcnc, LocalOriginsAreTheOffsetOfG92) {
       "G55 G0 X4\nG20 G52 X1 Z2\nG0 X0 Z0\nG52 X0 Y0 Z0\nG0 X1 Y1\nM2\n");
 }
 
-// Both refuse, or take, the same lines.
+// Both interpreters refuse the same lines and accept the same lines.
 TEST_F(Linuxcnc, RefusesAlike) {
   const std::vector<const char*> lines = {
       "G81 X1 Z-1", "G81 X1 R1", "G81 X1 Z3 R2", "G83 X1 Z-1 R2", "G83 X1 Z-1 R2 Q0", "G82 X1 Z-1 R2",
@@ -52,7 +52,7 @@ TEST_F(Linuxcnc, RefusesAlike) {
       "G38.2 X0 Y0 Z0", "G0 X#<nope>", "G0 X[1/0]", "G0 X[1+]", "G0 Xsqrt[-1]", "G0 X#5603", "#5420=1", "G0 X1 H1",
       "G0 X1 P1", "G92", "G0 G28 X1", "G93 G81 X1 Z-1 R2", "G80 X1", "G0 Xasin[2]", "G0 X[2 MOD 0]", "G0 X#0", "G52",
       "G52 G0 X1", "G0 G53 X",
-      // taken by both
+      // accepted by both
       "G0 X[2**3]", "G0 X-#1", "G0 X##7", "G43 H1", "G43.1 Z1", "G10 L20 P0 X1", "G28.1", "G92.3", "G81 X1 Z-1 R2 L2",
       "G8", "G97", "G52 X1"};
   for (const char* line : lines) {

@@ -1,4 +1,4 @@
-// Numbers of words: the double nearest to what is written, by strtod's judgement.
+// Numbers of words: the reader returns the double that is nearest to the text, as strtod does.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace trammel::gcode {
 namespace {
 
-// What the reader makes of X<text>, in bits; its message where it refuses.
+// The reader's value of X<text>, with all its bits; the message if the reader refuses it.
 std::string number_of(const std::string& text) {
   const machine::Machine machine = machine::default_machine();
   const std::string program = "G0 X" + text;
@@ -36,13 +36,13 @@ TEST(Number, HardCases) {
            "123456.789",
            "1000000000000",
            "0.000001",
-           "900719925474.0991",  // 2^53 - 1 without its point
+           "900719925474.0991",  // 2^53 - 1 without the point
            "900719925474.0992",
-           "900719925474.0993",  // 2^53 and the first whole number that is no double
+           "900719925474.0993",  // 2^53 + 1, the first integer that is no double
            "0.1000000000000000055511151231257827",
-           "0.1000000000000000124900090270330611",                     // 0.1, half an ulp further
-           "1.00000000000000011102230246251565404236316680908203125",  // a tie, to even
-           "1.00000000000000011102230246251565404236316680908203126",  // just above it
+           "0.1000000000000000124900090270330611",                     // 0.1 plus half an ulp
+           "1.00000000000000011102230246251565404236316680908203125",  // a tie, rounded to even
+           "1.00000000000000011102230246251565404236316680908203126",  // just above the tie
            "0.00000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000001",
            "000000000000000000000000000000000000000000000000000000012.5",
            "0.30000000000000004",
@@ -55,8 +55,8 @@ TEST(Number, HardCases) {
   EXPECT_EQ(number_of("0." + std::string(322, '0') + "3"), nearest("3e-323"));
 }
 
-// Of every length that a word of a program may have, so that each way of conversion and its borders are met: whole
-// numbers beyond 2^53 need 16 digits, beyond 2^64 20.
+// Numbers of every length that a word may have, so that each path of the conversion and its limits are reached:
+// integers above 2^53 have at least 16 digits, above 2^64 at least 20.
 TEST(Number, IsTheNearestDouble) {
   constexpr std::size_t kEach = 8000;
   std::mt19937 random(9);

@@ -1,4 +1,4 @@
-// Coordinate systems, G92, tool lengths and homes: where a program's coordinates lie on the machine.
+// Coordinate systems, G92, tool lengths and homes: from a program's coordinates to machine coordinates.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

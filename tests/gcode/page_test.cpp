@@ -1,4 +1,4 @@
-// The page for people lists the words that the reader understands: all of them, and no others.
+// The user's page lists exactly the words that the reader understands.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,8 +11,7 @@
 namespace trammel::gcode {
 namespace {
 
-// Words in the first column of the page's tables: | `G0`, `G1` | ... Those that are refused have a section of their
-// own.
+// Words in the first column of the page's tables: | `G0`, `G1` | ... The refused words have their own section.
 std::set<std::string> words_of_page(bool refused) {
   std::ifstream page(TRAMMEL_GCODE_PAGE);
   EXPECT_TRUE(page);

@@ -1,4 +1,4 @@
-// M3 to M5 and M7 to M9 as outputs that the machine file names.
+// M3 to M5 and M7 to M9 switch the outputs that the machine file names.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(PathOutputs, BeforeTheMotionOfTheirLineAndOffAtTheEnd) {
   EXPECT_EQ(order_of(read_text("G1 X1 F60 M3\nM5 G4 P1\nG28 X2 M8\nM30 M3\n", machine).motions),
             (Order{"1:+1-32", "1:move", "2:+0-33", "2:dwell", "3:+32768-0", "3:move", "3:move", "4:+1-32", "4:+0-32805",
                    "4:end"}));
-  // Where a program ends without M2 or M30 they stay.
+  // If a program ends without M2 or M30, the outputs keep their levels.
   EXPECT_EQ(order_of(read_text("%\nM3\n%\n", machine).motions), (Order{"2:+1-32", "3:end"}));
 }
 

@@ -1,4 +1,4 @@
-// Offsets, homes and levels of cycles that a probe decides, before the run.
+// Offsets, homes and levels of cycles that depend on a probe, before the run.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -54,7 +54,8 @@ TEST(ProbeOffsets, AreNotKnownWhereTheyAreInForce) {
   });
 }
 
-// An offset that is set so that the place where the machine stands gets a coordinate takes in the others.
+// G10 L20 and G92 set an offset so that the present position gets a given coordinate. The offset then depends on the
+// other offsets.
 TEST(ProbeOffsets, PassOnWhatIsNotKnown) {
   expect_later({
       {"G43.1 X#5063\nG10 L20 P1 X0\nG49\nG0 X1 Z0", kXLater, 4, 0},

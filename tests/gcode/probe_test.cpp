@@ -1,4 +1,4 @@
-// What a probe tells, and what a program may do with it before the run and in it.
+// Results of a probe, and their use by a program before the run and during it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -118,7 +118,7 @@ TEST(Probe, BeforeTheRunItsValuesAreNotKnown) {
   }
 }
 
-// Values that are wrong where the probe trips at its target, -3, and right at -2.
+// Values that are invalid if the probe trips at its target, -3, and valid if it trips at -2.
 TEST(Probe, ValuesThatMayBeWrongAreToldWhenTheyAre) {
   const std::vector<std::pair<const char*, const char*>> cases = {
       {"[1/[#5063+3]]", "division by 0"},
@@ -203,13 +203,13 @@ TEST(Probe, RefusesWhatIsNoProbe) {
             "1: G38.2: the machine file has no probe: --set probe.input=N or [probe] of the file names its input");
 }
 
-// The line moves nothing before the run, and where it ends is not known.
+// Before the run the line makes no motion, and its end point is unknown.
 TEST(Probe, LinesThatMayBeWrongAreCheckedWhenTheyAreReached) {
   struct Case {
     const char* line;
     unsigned axes;
     ErrorCode code;
-    const char* message;  // where the probe trips at its target
+    const char* message;  // if the probe trips at its target
   };
   const std::vector<Case> cases = {
       {"G1 X5 F[#5063+3]", kX, ErrorCode::kFeedTooSmall, "feed is 0"},
@@ -238,13 +238,14 @@ TEST(Probe, LinesThatMayBeWrongAreCheckedWhenTheyAreReached) {
     ASSERT_TRUE(met.error);
     EXPECT_EQ(met.error->code, one.code);
   }
-  // Values have no part in these.
+  // These errors do not depend on values.
   EXPECT_EQ(read_assumed("G2 X#5063 I1 K1").refusal(), "2: K in the plane XY (G17)");
   EXPECT_EQ(read_assumed("G93\nG1 X#5063").refusal(), "3: under G93 every motion needs an F word");
   EXPECT_EQ(read_assumed("G0 X1 Z0\nG1 X5 F0").refusal(), "3: feed is 0") << "nothing depends on the probe there";
 }
 
-// Where the first probe decides whether there is a second one, that one's results are as unknown as if it had run.
+// If the first probe decides whether the line of the second one is valid, the results of the second are unknown, as if
+// it had run.
 TEST(Probe, AProbeThatMayBeWrongHasNoKnownResults) {
   for (const char* probe : {"G38.2 X[#5063+3]", "G38.3 X1 F[#5063+3]", "G31 X1 F[#5063+3]"}) {
     const ProbedReading read = read_assumed(std::string(probe) + "\nG0 Y[1/#5061] X0 Z0");

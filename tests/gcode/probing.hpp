@@ -1,4 +1,4 @@
-// Programs with probes, for tests: each probe ends as told, those behind the last one told are assumed.
+// Reads programs with probes, for tests. `ends` has the results of the first probes; later probes are assumed.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct ProbeEnd {
 struct ProbedReading : Reading {
   std::size_t lines_on_probes = 0;
 
-  // Of the last motion before the end: the axes whose target a probe decides, and that target.
+  // Last motion before the end: the axes whose target depends on a probe, and the target.
   unsigned later() const { return before_end().later; }
   double target(std::size_t axis) const { return before_end().target[axis]; }
 
@@ -52,7 +52,7 @@ inline ProbedReading read_probing(const std::string& text, const std::vector<Pro
   return reading;
 }
 
-// Behind a probe along Z to -3: before the run, and when the edge was at `z`.
+// Read `text` after a probe along Z to -3: read_assumed() before the run, read_met() with the edge at `z`.
 constexpr const char* kProbeZ = "G38.2 Z-3 F60\n";
 inline ProbedReading read_assumed(const std::string& text, const machine::Machine& machine = machine_with_probe()) {
   return read_probing(kProbeZ + text, {}, machine);

@@ -1,4 +1,4 @@
-// Programs in the style of the posts of CAM systems and slicers: what they come to, in closed form.
+// Programs in the style of CAM post-processors and slicers: their lengths, times and holes against closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,9 +25,9 @@ Reading read_program(const std::string& name) {
 }
 
 struct Lengths {
-  double feed = 0;      // mm of X Y Z under feed
-  double extruded = 0;  // of E alone or along
-  double seconds = 0;   // of feeds and dwells
+  double feed = 0;      // length of feeds in X, Y and Z, mm
+  double extruded = 0;  // forward motion of E, alone or with other axes, mm
+  double seconds = 0;   // duration of feeds and dwells
 };
 
 double arc_length(const Motion& motion, const Coordinates& from) {
@@ -64,7 +64,7 @@ std::size_t count(const Reading& reading, MotionKind kind) {
                                                 [&](const Motion& motion) { return motion.kind == kind; }));
 }
 
-// Where feeds end deepest, in machine coordinates: X, Y and the level.
+// X, Y and Z of the ends of lines at feed with a Z below `below` and above `above`, in machine coordinates.
 std::vector<std::array<double, 3>> bottoms(const Reading& reading, double below, double above = -1e9) {
   std::vector<std::array<double, 3>> found;
   for (const Motion& motion : reading.motions) {
@@ -75,8 +75,8 @@ std::vector<std::array<double, 3>> bottoms(const Reading& reading, double below,
   return found;
 }
 
-// A bracket of 50 x 25 mm with corners of 5 mm, entered by a lead of 10 mm and left by a half circle of 5 mm; four
-// holes of 8 mm, pecked by 3 mm.
+// A bracket of 50 x 25 mm with corner radii of 5 mm, a lead-in of 10 mm and a lead-out of a half circle of 5 mm; four
+// holes of 8 mm depth, in pecks of 3 mm.
 TEST(Programs, FusionBracket) {
   const Reading reading = read_program("fusion.ngc");
   double cut = 0;
@@ -89,7 +89,7 @@ TEST(Programs, FusionBracket) {
     }
     here = motion.target;
   }
-  // Lead of 10, sides of 40, 20, 40 and 20 (the corner at the lead is an arc too), four quarters, the half circle.
+  // Lead-in of 10, sides of 40, 20, 40 and 20 (the corner at the lead-in is an arc, too), four quarters, half circle.
   const double expected = 10 + 40 + 20 + 40 + 20 + 4 * 5 * kPi / 2 + 5 * kPi;
   EXPECT_NEAR(cut, expected, 1e-9);
   EXPECT_EQ(reading.accepted.at("M6"), 2U);
@@ -105,9 +105,9 @@ TEST(Programs, FreecadHoles) {
   const std::vector<std::array<double, 3>> wanted = {{10, 10, 14}, {30, 10, 14}, {30, 30, 13}, {10, 30, 14}};
   EXPECT_EQ(holes, wanted);
   EXPECT_EQ(count(reading, MotionKind::kArc), 2U);
-  // Two half circles of 5 mm, a millimetre down each.
+  // Two half circles of radius 5 mm, each 1 mm down.
   const Lengths lengths = lengths_of(reading.motions);
-  // Down from R, G73's way back of 0.254 mm three times, once more.
+  // Four holes from R down; G73 backs off by 0.254 mm three times and feeds over that distance again.
   EXPECT_NEAR(lengths.feed, 9 + 9 + 10 + 9 + 3 * 0.254 + 2 * std::hypot(5 * kPi, 1), 1e-9);
 }
 
@@ -128,10 +128,10 @@ TEST(Programs, LightburnFrame) {
   EXPECT_EQ(reading.motions.back().target[0], 0);
 }
 
-// Layers of 80 mm of perimeter.
+// Layers with a perimeter of 80 mm.
 TEST(Programs, PrusaslicerSquare) {
   const Reading reading = read_program("prusaslicer.gcode");
-  // E: 5 sides and the prime that returns what was drawn back, twice.
+  // E: 5 sides. The extruded length also has two returns of 0.8 mm after retractions.
   EXPECT_NEAR(reading.motions.back().target[3], 5 * 0.6651, 1e-9);
   EXPECT_NEAR(lengths_of(reading.motions).extruded, 5 * 0.6651 + 2 * 0.8, 1e-9);
   EXPECT_EQ(reading.accepted.at("M104"), 2U);
@@ -141,7 +141,7 @@ TEST(Programs, PrusaslicerSquare) {
 
 TEST(Programs, CuraSquare) {
   const Reading reading = read_program("cura.gcode");
-  // Absolute E, set back by G92 twice: 3 primed, 6.5 drawn back and returned, four sides, 6.5 drawn back.
+  // Absolute E, set to 0 by G92 twice: 3 primed, 6.5 retracted and returned, four sides, 6.5 retracted.
   EXPECT_NEAR(reading.motions.back().target[3], 3 + 4 * 0.6651 - 6.5, 1e-9);
   EXPECT_EQ(reading.motions.back().target[0], 0);
   EXPECT_NEAR(reading.motions.back().target[2], 10.3, 1e-12);

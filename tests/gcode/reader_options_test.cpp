@@ -1,4 +1,4 @@
-// The operator's switches of the reader, and a line that a program must have.
+// Options of the reader that the operator sets, and must_reach(), a line that the program must contain.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 
 struct Read {
-  std::vector<Motion> motions;  // without the end
+  std::vector<Motion> motions;  // without the motion kEnd
   std::optional<Error> error;
 };
 

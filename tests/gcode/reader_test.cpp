@@ -317,7 +317,7 @@ TEST(Gcode, ErrorsNameFileAndLine) {
 }
 
 TEST(Gcode, ALineGivesAllOfItsMotionsOrNone) {
-  EXPECT_EQ(read_text("G4 P1 X1").motions.size(), 0U);  // the dwell alone would be understood
+  EXPECT_EQ(read_text("G4 P1 X1").motions.size(), 0U);  // the dwell alone would be valid
   EXPECT_EQ(read_text("G0\nG4 P1 X1").motions.size(), 3U);
 }
 

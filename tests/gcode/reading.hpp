@@ -1,4 +1,4 @@
-// A whole program at once, for tests.
+// Reads a whole program at once, for tests.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@ struct Reading {
   std::map<std::string, std::size_t> accepted;
   std::optional<Error> error;
 
-  // What was refused, with its line before it or without.
+  // The error: refusal() with its line number, message() without it.
   std::string refusal() const { return error ? describe(*error).substr(error->file.size() + 1) : "accepted"; }
   std::string message() const { return error ? error->message : "accepted"; }
 };

@@ -1,4 +1,4 @@
-// What S, M3, M4 and M5 ask for in each motion, of a machine whose file has a spindle or a laser.
+// Power in each motion by S, M3, M4 and M5, for a machine whose file has a spindle or a laser.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ machine::Machine machine_with_spindle(const char* more) {
   return machine;
 }
 
-// Power in hundredths of each motion that is none of outputs, "~" where it follows the speed; "d" of a dwell.
+// Power of each motion except output changes, in percent. "~": it follows the speed; "d": a dwell.
 std::vector<std::string> powers_of(const machine::Machine& machine, const std::string& text) {
   std::vector<std::string> result;
   for (const Motion& motion : read_text(text, machine).motions) {
@@ -42,7 +42,7 @@ TEST(Spindle, CuttingWaitsForANewSpeed) {
             (Powers{"d50", "50", "50", "d60", "60", "0", "0"}));
 }
 
-// As Grbl 1.1 in its laser mode.
+// Like Grbl 1.1 in laser mode.
 TEST(Laser, IsDarkInTraversesAndFollowsWithM4) {
   const machine::Machine machine = machine_with_spindle("spindle.laser=true");
   EXPECT_EQ(powers_of(machine, "M3 S1000\nG0 X1\nG1 X2 F60\nG4 P1\nG2 X4 I1\nG0 X5\nG4 P1\nG1 S0 X6\nS500 X7\nM2\n"),

@@ -1,4 +1,4 @@
-// G5 and G5.1: the lines against the curve.
+// G5 and G5.1: distance between the lines and the curve.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kTolerance = 0.002;  // mm, what docs/user/g-code.md says
+constexpr double kTolerance = 0.002;  // mm, as docs/user/g-code.md says
 
 struct Point {
   double x, y;
@@ -38,7 +38,7 @@ double to_segment(const Point& p, const Point& a, const Point& b) {
   return std::hypot(p.x - a.x - share * dx, p.y - a.y - share * dy);
 }
 
-// Lines of a program that begins at `controls[0]`; the largest distance of the curve from them.
+// Largest distance of the curve from the lines of a program that begins at `controls[0]`.
 double largest_distance(const std::vector<Motion>& motions, const std::vector<Point>& controls) {
   std::vector<Point> path{controls.front()};
   for (const Motion& motion : motions) path.push_back({motion.target[0], motion.target[1]});

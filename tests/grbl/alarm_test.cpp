@@ -1,4 +1,4 @@
-// Alarms: of limits, probes and homing; what they drop, and what is answered.
+// Alarms of limits, probes and homing: what they drop, and the answers.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -93,7 +93,8 @@ TEST(Alarm, OutlivesAResetWhileItsCauseDoes) {
   EXPECT_THAT(session.answers(), ElementsAre("Grbl 1.1h ['$' for help]", "[MSG:limit of X]", kUnlockFirst));
 }
 
-// What the card's side refuses without an alarm: told, the rest of the lines dropped, no lock.
+// The machine side refuses a motion without an alarm: the reason is reported, the remaining lines are dropped, and
+// there is no lock.
 TEST(Alarm, IsNoneWhereAMotionIsRefused) {
   Session session;
   session.begun();
@@ -130,7 +131,7 @@ TEST(Probe, TellsAMissWithoutAlarmWhereThatIsAsked) {
   }
 }
 
-// As Grbl: the line has its ok behind the alarm, those behind it are refused.
+// As in Grbl, the line gets its ok after the alarm, and the lines after it are refused.
 TEST(Probe, RaisesAlarm5WhereItMisses) {
   for (const char* const line : {"G38.2Z-4F100", "G38.4Z-4F100"}) {
     Session session;
@@ -182,7 +183,7 @@ TEST(Probe, EndsWithAReset) {
   EXPECT_EQ(session.state(), "Idle");
 }
 
-// The lines of motions that switch outputs.
+// The lines of motions that contain M words, which switch outputs.
 std::vector<std::string> switches(const Session& session) {
   std::vector<std::string> lines;
   for (const std::string& line : session.fake.lines) {
@@ -209,7 +210,7 @@ TEST(Outputs, AreSwitchedOffByAnAlarmAndStayOff) {
   Session session(fenced_router());
   session.begun();
   session.ask("M3 S500");
-  session.ask("G90 G1 X50 F100");  // beyond the soft limit
+  session.ask("G90 G1 X50 F100");  // exceeds the soft limit
   ASSERT_EQ(session.state(), "Alarm");
   EXPECT_EQ(switches(session).back(), "M5 M9");
   session.ask("$X");
@@ -232,7 +233,7 @@ TEST(Outputs, ThatAStopHasSwitchedOffAreKnownToBeOff) {
   EXPECT_EQ(session.fake.befores.back().spindle, 5) << "the jog's cancel set the safe levels";
 }
 
-// A router that has $22=1.
+// A router with $22=1.
 class HomingRouter : public testing::Test {
  protected:
   HomingRouter() {
@@ -263,7 +264,7 @@ TEST_F(HomingRouter, HomesSingleAxesWithoutStartupLines) {
   EXPECT_EQ(session_.state(), "Idle");
 }
 
-// Homing takes long: reports and resets are served meanwhile, however the line has come.
+// Homing takes long. During it reports and resets are served, whether the $H came during a wait or before.
 TEST_F(HomingRouter, ServesASenderMeanwhile) {
   for (const bool in_wait : {false, true}) {
     std::string during;

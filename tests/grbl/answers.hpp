@@ -1,4 +1,4 @@
-// Lines and the number that Grbl 1.1h answers them with, 0 for ok.
+// Lines, and the error number with which Grbl 1.1h answers them; 0 for ok.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace trammel::grbl {
 
-// `lines`: with '|' between them. All but the last are accepted and make the state that the last one meets.
+// `lines`: separated by '|'. All lines but the last must be accepted; they set the state in which the last one comes.
 struct Answer {
   const char* lines;
   int error;

@@ -1,4 +1,4 @@
-// Motion, its modes and places: lines and Grbl 1.1h's answers.
+// Motion words, their modes and places: lines and Grbl 1.1h's answers.
 #include "answers.hpp"
 
 namespace trammel::grbl {

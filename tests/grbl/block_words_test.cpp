@@ -135,7 +135,7 @@ TEST(Block, ProgramSpindleAndCoolant) {
                   {"M6 T1", 20},
                   {"M7", 0},
                   {"M8", 0},
-                  {"M7 M8", 0},  // in Grbl 21
+                  {"M7 M8", 0},  // error 21 in Grbl
                   {"M7 M8 M9", 21},
                   {"M7 M8 M7", 21},
                   {"M8 M9", 21},
@@ -255,15 +255,15 @@ TEST(Block, Jogs) {
                   {"G20|$J=X1 F100", 0}});
 }
 
-// Where this server answers otherwise than Grbl, on purpose.
+// Deliberate differences from Grbl's answers.
 TEST(Block, DiffersFromGrbl) {
   expect_answers({
       {"$J=F100", 26},           // Grbl accepts it and jogs to the machine's 0,0,0
-      {"G93 G38.2 X1 F5", 22},   // a probe has a feed, not a time
-      {"G2 X0 Z2 R1 F100", 33},  // Grbl divides by the way's length, which is 0 in the plane
+      {"G93 G38.2 X1 F5", 22},   // a probing motion has a feed, not a time
+      {"G2 X0 Z2 R1 F100", 33},  // Grbl divides by the distance in the plane, which is 0
       {"G256", 20},
       {"M256", 20},
-      {"M1000", 20},  // Grbl keeps codes in a byte
+      {"M1000", 20},  // Grbl stores codes in a byte
   });
 }
 

@@ -1,4 +1,4 @@
-// The protocol from a sender's side: which line is answered when, and with what.
+// The protocol as a sender sees it: when each line is answered, and the answers.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -48,7 +48,7 @@ TEST(Controller, RefusesALineOf80Bytes) {
   EXPECT_EQ(session.fake.at()[0], 2);
 }
 
-// Grbl's planner has 15 blocks: the line behind those is answered when one is done.
+// Grbl's planner has 15 blocks. The line after those is answered when a block has ended.
 TEST(Controller, TakesAsManyLinesAheadAsGrblsPlannerHolds) {
   Session session;
   session.begun();
@@ -78,7 +78,7 @@ TEST(Controller, ShowsItsBuffers) {
   session.script([] {}, [] {}, [&] { busy = session.field("Bf"); });
   for (int n = 1; n <= 18; ++n) session.put("G91G1X1F1000\n");
   session.settle();
-  // Of 18 lines of 13 bytes 16 are read, the others wait.
+  // 16 of 18 lines of 13 bytes are read; the others wait.
   EXPECT_EQ(busy, "0,102");
   EXPECT_EQ(session.field("Bf"), "15,128");
 }
@@ -110,7 +110,7 @@ TEST(Controller, TellsTheMotionWhatHoldsBeforeIt) {
   EXPECT_EQ(session.fake.at()[0], 7);
 }
 
-// Each motion begins with the modes that lines before it have set.
+// Each motion begins with the modes set by earlier lines.
 TEST(Controller, RemembersModesBetweenMotions) {
   Session session;
   session.begun();
@@ -252,11 +252,11 @@ TEST(Controller, KeepsStartupLinesBackWhileItIsLocked) {
   session.fake.trouble_now = {false, Alarm::kPositionLost, "the place is not known", std::nullopt};
   session.controller.begin();
   EXPECT_THAT(session.answers(), ElementsAre(kGreeting, "[MSG:the place is not known]", "[MSG:'$H'|'$X' to unlock]"));
-  // Grbl: they may move the machine, whose place is not known.
+  // The unlock runs no startup lines, as in Grbl: they could move the machine, whose place is not known.
   EXPECT_THAT(session.ask("$X"), ElementsAre("[MSG:Caution: Unlocked]", "ok"));
 }
 
-// What bCNC does when a program has ended.
+// The bytes that bCNC sends at the end of a program.
 TEST(Controller, KeepsItsPlaceThroughBcncsEndOfJob) {
   Session session;
   session.begun();
@@ -336,7 +336,7 @@ TEST(Controller, ReportsPinsSpindleAndLineNumbers) {
   EXPECT_EQ(session.field("Ln"), "");
 }
 
-// A settings file on a full disk stops no program.
+// A settings file that cannot be written does not stop a program.
 TEST(Controller, TellsThatSettingsAreNotKept) {
   Session session(router(), "/nonexistent/settings");
   session.begun();

@@ -1,5 +1,5 @@
-// A machine in memory behind the protocol. A motion takes a few ticks; with each tick the next step of the test's
-// script runs, then what the controller does meanwhile. Records what it was asked.
+// A simulated machine in memory behind the protocol. A motion takes a few ticks. In each tick the next step of the
+// test's script runs, and then the controller's own work during motions. Records the calls.
 #pragma once
 
 #include <deque>
@@ -15,7 +15,7 @@
 
 namespace trammel::grbl {
 
-// The lines of a motion as they are read, those of a preamble too.
+// Records the lines of a motion as they are read, including those of a preamble.
 class RecordedLines final : public gcode::LineSource {
  public:
   RecordedLines(gcode::LineSource& lines, std::vector<std::string>& seen) : lines_(lines), seen_(seen) {}
@@ -35,24 +35,24 @@ class FakeMachine final : public MachineSide {
  public:
   explicit FakeMachine(machine::Machine machine) : machine_(std::move(machine)) {}
 
-  // What the test decides.
-  std::deque<std::function<void()>> script;  // one step a tick
+  // Settings by the test.
+  std::deque<std::function<void()>> script;  // one step per tick
   unsigned ticks_a_motion = 2;
-  unsigned ticks_to_hold = 2;  // until it stands
-  bool touched = false;        // the probe, before a probe's way
-  std::optional<double> edge;  // share of a probe's way at which it trips
+  unsigned ticks_to_hold = 2;  // ticks from a hold to rest
+  bool touched = false;        // probe contact before a probing motion
+  std::optional<double> edge;  // fraction of the probing motion at which the probe trips
   End homing_end;
   End trouble_now;
   End unlock_leaves;
-  std::optional<End> motion_fails;  // the next motion, when it has begun
+  std::optional<End> motion_fails;  // result of the next motion, after it has begun
   bool is_homed = true;
   double most_feed_override = 1000;
   Live live;
 
-  // What it was asked.
-  std::vector<std::string> lines;      // of motions
-  std::vector<gcode::Motion> motions;  // that have ended
-  std::vector<Before> befores;         // of each motion's first line
+  // Recorded calls.
+  std::vector<std::string> lines;      // lines of motions
+  std::vector<gcode::Motion> motions;  // motions that have ended
+  std::vector<Before> befores;         // state before each motion's first line
   std::vector<std::vector<std::size_t>> homings;
   std::vector<bool> holds;
   std::vector<double> feeds;
@@ -70,7 +70,7 @@ class FakeMachine final : public MachineSide {
     machine_ = machine;
   }
   Live look() override {
-    live.any_sent = true;  // so that nobody waits for a sender's next line
+    live.any_sent = true;  // no wait for a sender's next line
     live.seconds_left = 0;
     return live;
   }
@@ -176,7 +176,7 @@ class FakeMachine final : public MachineSide {
     return probed;
   }
 
-  // False: it was stopped on the way, in the middle.
+  // Returns false if the motion was stopped; the place is then halfway.
   bool move_along(const gcode::Motion& motion) {
     const gcode::Coordinates from = live.at;
     live.line = motion.line;
@@ -195,7 +195,7 @@ class FakeMachine final : public MachineSide {
   void tick() {
     if (++ticks_ > kMostTicks) throw std::logic_error("the test waits for ever");
     if (inside_) return;
-    inside_ = true;  // as the card's bus: what happens meanwhile has no meanwhile of its own
+    inside_ = true;  // as on the card's bus, the hook is not called from within itself
     if (!script.empty()) {
       const std::function<void()> step = std::move(script.front());
       script.pop_front();
@@ -212,7 +212,7 @@ class FakeMachine final : public MachineSide {
   bool moving_ = false;
   bool stopping_ = false;
   bool inside_ = false;
-  std::optional<unsigned> held_for_;  // ticks since a hold was asked for
+  std::optional<unsigned> held_for_;  // ticks since a hold was requested
   unsigned ticks_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Bytes of a sender: real-time commands, lines, and what is left of a line.
+// Bytes from a sender: real-time commands, lines, and the text of a line after cleaning.
 #include "trammel/grbl/input_buffer.hpp"
 
 #include <gmock/gmock.h>
@@ -125,7 +125,7 @@ TEST(Cleaned, LeavesCommentsOut) {
   EXPECT_EQ(cleaned("G0)X1"), "G0)X1");  // error 1, as in Grbl
 }
 
-// Grbl refuses '%'; programs begin and end with it.
+// Grbl refuses '%', but programs begin and end with it.
 TEST(Cleaned, LeavesLinesWithAPercentSignOut) {
   EXPECT_EQ(cleaned("%"), "");
   EXPECT_EQ(cleaned(" % a program"), "");

@@ -1,4 +1,4 @@
-// Where a program's lines lead: offsets, places, what a reset keeps, and soft limits.
+// Effects of a program's lines: offsets, places, the state that a reset keeps, and soft limits.
 #include "trammel/grbl/interpreter.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ class GrblInterpreter : public testing::Test {
 
   Status read(const std::string& line) { return interpreter_.read(cleaned(line), block_); }
   Status jog(const std::string& line) { return interpreter_.read_jog(cleaned(line), block_); }
-  // All accepted.
+  // Reads lines, all of which must be accepted.
   void read_all(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) EXPECT_EQ(read(line), Status::kOk) << line;
   }
@@ -138,7 +138,7 @@ TEST_F(GrblInterpreter, GoesToPredefinedPlaces) {
   EXPECT_THAT(place(), ElementsAre(0, 2, 0));
 }
 
-// In machine coordinates, whatever offsets there are; G28.1 keeps the place before the line's own motion.
+// Places are kept in machine coordinates, independent of offsets. G28.1 keeps the place before the line's own motion.
 TEST_F(GrblInterpreter, KeepsPredefinedPlacesInMachineCoordinates) {
   read_all({"G10 L2 P1 X50", "G92 Y3", "G0 X1", "G28.1 X9"});
   EXPECT_THAT(offset(28), ElementsAre(51, 0, 0));

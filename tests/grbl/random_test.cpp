@@ -1,4 +1,4 @@
-// Random bytes and random lines: nothing ends the controller, and no answer is lost or given twice.
+// Random bytes and random lines: nothing ends the controller, and each line gets exactly one answer.
 #include "random.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kBytes = 65'536;
 
-// Lines that neither reset nor lock.
+// Lines that cause neither a reset nor a lock.
 constexpr std::array<const char*, 40> kLines{
     "G0X1", "G1X2Y3F500", "X4",      "G91",        "G90",      "G2X1I1", "G4P0.1",   "M0",      "M3S100",     "M5",
     "M30",  "$G",         "$$",      "$#",         "$I",       "$N",     "$",        "$J=X1F9", "$J=G91Y1F9", "$X",
@@ -51,7 +51,7 @@ class Traffic {
   }
 
  private:
-  // Some bytes; at the end what ends holds and pauses.
+  // Sends some bytes. After the last one, '~' ends holds and pauses.
   void pump() {
     const std::size_t count = std::min<std::size_t>(random_.below(12), bytes_.size() - at_);
     session_.put(bytes_.substr(at_, count));
@@ -65,7 +65,7 @@ class Traffic {
   std::size_t at_ = 0;
 };
 
-// Lines with real-time commands in them, at any place.
+// Lines with real-time commands at random places.
 std::string random_lines(std::uint64_t seed, bool rough, std::size_t size) {
   test::Random random(seed);
   constexpr std::array<const char*, 3> kEnds{"\n", "\r", "\r\n"};
@@ -84,7 +84,7 @@ std::string random_lines(std::uint64_t seed, bool rough, std::size_t size) {
 std::string random_bytes(std::uint64_t seed) {
   test::Random random(seed);
   std::string bytes;
-  // Half of them at random, half that make lines.
+  // Half of the bytes are random, and half are characters of lines.
   for (std::size_t n = 0; n < kBytes; ++n) {
     constexpr std::string_view kUsual = "GXYZFMJ$=0123456789.-\n\n\n\r~~~";
     bytes += random.below(2) == 0 ? static_cast<char>(random.below(256)) : kUsual[random.below(kUsual.size())];
@@ -92,7 +92,7 @@ std::string random_bytes(std::uint64_t seed) {
   return bytes + "\n";
 }
 
-// Line ends, as if there were no real-time commands.
+// Number of line ends, not counting real-time commands.
 std::size_t lines_in(const std::string& bytes) {
   std::string text;
   for (const char c : bytes) {
@@ -112,7 +112,7 @@ std::size_t answers_in(const std::vector<std::string>& texts) {
   }));
 }
 
-// Whatever has come: a reset and $X make it work.
+// After any input, a reset and $X make the controller work.
 void expect_alive(Session& session) {
   session.fake.set_meanwhile([&session] { session.controller.serve(); });
   session.fake.unlock_leaves = {};

@@ -51,7 +51,7 @@ TEST(RealTime, HoldsOnceHoweverOftenItIsAsked) {
   EXPECT_EQ(session.state(), "Idle");
 }
 
-// Lines that come in a hold wait; those that were accepted stay.
+// Lines that come during a hold wait. Lines that were accepted before are kept.
 TEST(RealTime, KeepsAcceptedLinesInAHold) {
   Session session;
   session.begun();
@@ -129,7 +129,7 @@ TEST(RealTime, TurnsAHoldIntoAnOpenDoor) {
   EXPECT_EQ(session.state(), "Idle");
 }
 
-// The jog ends on its way, those behind it are forgotten, and the place is the machine's.
+// The jog ends before its target, later jogs are dropped, and the place is that of the machine.
 TEST(RealTime, CancelsJogs) {
   for (const char* const byte : {"\x85", "!"}) {
     Session session;
@@ -149,7 +149,7 @@ TEST(RealTime, CancelsJogs) {
   }
 }
 
-// Grbl reads on when the cancelled jog stands: what a sender sends behind the cancel counts.
+// As in Grbl, reading continues when the cancelled jog is at rest: lines that follow the cancel count.
 TEST(RealTime, TakesLinesBehindACancelledJog) {
   Session session;
   session.begun();
@@ -311,7 +311,7 @@ TEST(RealTime, TellsTheMachineOfOverridesAtOnce) {
   EXPECT_THAT(session.fake.rapids, ElementsAre(25));
 }
 
-// Of a machine whose limits hold up to 150 %.
+// The machine allows a feed override of at most 150 %.
 TEST(RealTime, ReportsTheOverrideThatTheMachineAllows) {
   Session session;
   session.begun();
@@ -338,7 +338,7 @@ TEST(RealTime, AnswersAReportWhereverItStands) {
   EXPECT_EQ(session.answers().size(), 8U) << "two ok and six reports";
 }
 
-// A button at the machine holds it, without the controller.
+// A button at the machine causes a hold without the controller.
 TEST(RealTime, ShowsTheMachinesOwnHoldAndEndsIt) {
   Session session;
   session.begun();

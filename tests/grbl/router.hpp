@@ -1,4 +1,4 @@
-// The machine of these tests: a router of three axes without a card.
+// The machine of these tests: a router with three axes and no card.
 #pragma once
 
 #include "trammel/machine/machine.hpp"
@@ -26,7 +26,7 @@ inline machine::MachineAxis router_axis(char letter) {
   return axis;
 }
 
-// Spindle and coolant have outputs, the probe has an input; no soft limits, nothing to home by.
+// Spindle and coolant have outputs, and the probe has an input. There are no soft limits and no homing switches.
 inline machine::Machine router() {
   machine::Machine machine;
   machine.clock_hz = kRouterClock;
@@ -39,7 +39,7 @@ inline machine::Machine router() {
   return machine;
 }
 
-// With a travel of 200 mm an axis, Grbl's way: from -200 to 0; and a switch at the upper end to home by.
+// Each axis has a travel of 200 mm, from -200 to 0 as in Grbl, and a homing switch at the upper end.
 inline machine::Machine fenced_router() {
   machine::Machine machine = router();
   for (machine::MachineAxis& axis : machine.axes) {

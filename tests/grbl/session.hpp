@@ -1,4 +1,4 @@
-// A sender at a controller with a machine in memory.
+// A sender, a controller, and a simulated machine in memory.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ class Session {
     fake.set_meanwhile([this] { controller.serve(); });
   }
 
-  // Powered up, its banner read.
+  // Powers up and reads the banner.
   Session& begun() {
     controller.begin();
     settle();
@@ -30,9 +30,9 @@ class Session {
     return *this;
   }
 
-  // Without waiting for an answer.
+  // Sends bytes and does not wait for an answer.
   void put(const std::string& bytes) { controller.receive(bytes); }
-  // Until nothing is left to do, or it is held.
+  // Works until nothing is left to do, or the machine is in a hold.
   void settle() {
     for (unsigned quiet = 0, n = 0; quiet < 3; ++n) {
       if (n > 20'000) throw std::logic_error("the controller does not settle");
@@ -41,15 +41,15 @@ class Session {
       quiet = fake.idle_waits == before ? 0 : quiet + 1;
     }
   }
-  // What came since the last call, without blank lines.
+  // Answers since the last call, without blank lines.
   std::vector<std::string> answers() { return std::exchange(answers_, {}); }
-  // All that is answered to one line.
+  // Sends a line and returns all its answers.
   std::vector<std::string> ask(const std::string& line) {
     put(line + "\n");
     settle();
     return answers();
   }
-  // The last of it: "ok".
+  // Sends a line and returns the last of its answers, normally "ok".
   std::string last(const std::string& line) {
     const std::vector<std::string> all = ask(line);
     return all.empty() ? "" : all.back();
@@ -71,7 +71,7 @@ class Session {
     return fields;
   }
   std::string state() { return report().front(); }
-  // A field by its name, "MPos"; "" where the reports have none. Some fields come seldom.
+  // A field by its name, such as "MPos"; "" if the reports do not have it. Some fields are not in every report.
   std::string field(const std::string& name) {
     const bool seldom = name == "WCO" || name == "Ov" || name == "A";
     for (int n = 0; n < (seldom ? 31 : 1); ++n) {
@@ -81,7 +81,7 @@ class Session {
     }
     return "";
   }
-  // Each is done in one tick of the motions that follow.
+  // Steps for the next motions, one per tick.
   template <typename... Steps>
   void script(Steps... steps) {
     (fake.script.emplace_back(steps), ...);

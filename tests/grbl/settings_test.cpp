@@ -100,7 +100,7 @@ TEST(Settings, RefusesWithGrblsNumbers) {
   const std::vector<std::string> before = settings.lines();
   EXPECT_NE(settings.set(100, std::numeric_limits<double>::infinity()), Status::kOk);
   EXPECT_NE(settings.set(100, std::nan("")), Status::kOk);
-  EXPECT_NE(settings.set(120, 0), Status::kOk);  // no machine stands still for ever
+  EXPECT_NE(settings.set(120, 0), Status::kOk);  // an acceleration of 0 never moves
   EXPECT_EQ(settings.lines(), before);
 }
 
@@ -135,7 +135,7 @@ TEST(Settings, ChangesTheMachine) {
   EXPECT_EQ(machine.axes[0].max_velocity, 100);
   EXPECT_EQ(machine.axes[2].max_velocity, 10);
   EXPECT_EQ(machine.axes[1].max_acceleration, 20);
-  EXPECT_EQ(machine.axes[1].max_velocity, 50);  // as the file has it
+  EXPECT_EQ(machine.axes[1].max_velocity, 50);  // unchanged, as in the machine file
   EXPECT_EQ(machine.axes[0].max - machine.axes[0].min, 300);
 }
 
@@ -173,7 +173,7 @@ TEST(Settings, HasSoftLimitsOnlyWithHoming) {
   EXPECT_EQ(settings.set(20, 1), Status::kSoftLimitsNeedHoming);
 }
 
-// Travel that a sender gives to a machine without limits: Grbl's, from -travel to 0, and only with $20.
+// A sender sets a travel on a machine without limits. As in Grbl the range is -travel to 0, and only with $20.
 TEST(Settings, GivesAMachineWithoutLimitsThoseOfItsTravel) {
   Settings settings(router(), "");
   EXPECT_EQ(settings.set(130, 100), Status::kOk);
@@ -217,7 +217,7 @@ TEST_F(SettingsFile, KeepsWhatWasChanged) {
   EXPECT_EQ(again.startup(0), "");
   EXPECT_EQ(again.startup(1), "G55G20");
   EXPECT_EQ(again.build_text(), "MY ROUTER=1");
-  // G92 and the system in force are Grbl's to forget.
+  // As in Grbl, G92 and the active coordinate system are not kept.
   EXPECT_EQ(again.parameters(), (std::map<int, double>{{5221, 1.0 / 3}, {5161, -7}}));
 }
 
@@ -255,7 +255,7 @@ TEST_F(SettingsFile, StaysWholeWhereItCannotBeWritten) {
   Settings settings(router(), file_);
   EXPECT_EQ(settings.set(110, 1000), Status::kOk);
   const std::string before = text();
-  std::filesystem::create_directories(file_ + ".new");  // in the way of the new file
+  std::filesystem::create_directories(file_ + ".new");  // prevents the new file
   EXPECT_EQ(settings.take_trouble(), "");
   EXPECT_EQ(settings.set(110, 2000), Status::kOk);
   EXPECT_EQ(settings.value(110), 2000) << "in force";

@@ -1,4 +1,4 @@
-// What each state answers to each command.
+// The answer to each command in each state.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -14,7 +14,7 @@ using testing::IsEmpty;
 
 using Answers = std::map<std::string, std::string>;
 
-// The last answer to each line, all in a state that `enter` makes; the state is made anew for each.
+// Checks the last answer to each line in the state that `enter` sets up. Each line gets a new session.
 void expect_in_state(const std::string& state, const std::function<void(Session&)>& enter, const Answers& answers) {
   for (const auto& [line, answer] : answers) {
     Session session(fenced_router());
@@ -26,7 +26,7 @@ void expect_in_state(const std::string& state, const std::function<void(Session&
   }
 }
 
-// As above, while the machine moves by `line`.
+// The same, while the machine executes `motion`.
 void expect_in_motion(const std::string& state, const std::string& motion, const Answers& answers) {
   for (const auto& [line, answer] : answers) {
     Session session(fenced_router());
@@ -166,7 +166,7 @@ TEST(States, CheckRefusesWhatIsNoProgram) {
                    {"M6", "error:20"}});
 }
 
-// Held, nothing is answered; the lines are done when it goes on.
+// In a hold no line is answered. The lines are executed when it ends.
 TEST(States, HoldAndDoorAnswerNothingUntilTheyEnd) {
   for (const auto& [byte, state] : std::map<std::string, std::string>{{"!", "Hold:0"}, {"\x84", "Door:0"}}) {
     Session session;
@@ -227,7 +227,7 @@ TEST(States, UnlockTakesThePlaceOfTheMachine) {
   EXPECT_EQ(session.fake.at()[0], 34);
 }
 
-// Of a machine that has to be homed.
+// A machine that requires homing.
 TEST(States, BeginsLockedWhereHomingIsDue) {
   machine::Machine machine = fenced_router();
   machine.require_home = true;

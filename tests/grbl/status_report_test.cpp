@@ -23,7 +23,7 @@ Report router_report(bool busy = false) {
   return report;
 }
 
-// Of `count` reports the places of those that have the field.
+// Indexes of those of `count` reports that have the field.
 std::vector<int> places_of(StatusReport& status, const Report& report, const std::string& field, int count) {
   std::vector<int> places;
   for (int n = 0; n < count; ++n) {
@@ -54,7 +54,7 @@ TEST(StatusReport, RepeatsThemMoreSeldomWhileBusy) {
   EXPECT_THAT(places_of(overrides, router_report(true), "Ov", 95), ElementsAre(1, 21, 41, 61, 81));
 }
 
-// Grbl keeps them apart so that a report stays short.
+// As in Grbl, no report has both fields, so that reports stay short.
 TEST(StatusReport, NeverHasBoth) {
   StatusReport status;
   unsigned both = 0;

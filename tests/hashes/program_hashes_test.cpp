@@ -1,5 +1,6 @@
 // The steps of whole programs against hashes recorded from an earlier card: the same path steps, and for programs
-// without arcs the same times at the pins but for the constants below. Recorded anew only on request:
+// without arcs the same times at the pins except for the constants below. The hashes are recorded again only on
+// request:
 // TRAMMEL_WRITE_HASHES=tests/data/program_hashes.json build/release/bin/test_hashes [--gtest_filter=...]
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ namespace {
 
 using nlohmann::json;
 
-// By how many clocks this card is later than the one that was recorded: at the first step, and more at each barrier.
+// Clocks by which this card is later than the recorded one: at the first step, and additionally at each barrier.
 constexpr Shift kShift = {3, 1};
 
 constexpr const char* kHashes = TRAMMEL_HASHES_FILE;
@@ -38,16 +39,16 @@ struct Job {
   std::string folder;
   std::string program;
   sim::EngineKind engine;
-  std::string set;                            // override of the machine, or nothing
-  std::optional<std::uint32_t> engines = {};  // kModel: the mask of them, where it is not the usual card's
+  std::string set;                            // override of the machine, or empty
+  std::optional<std::uint32_t> engines = {};  // kModel: mask of the engines if they differ from those of the usual card
 };
 
-// In the names of the tests.
+// For the names of the tests.
 void PrintTo(const Job& job, std::ostream* out) { *out << job.program; }
 
 bool is_model(const Job& job) { return job.engine == sim::EngineKind::kModel; }
 
-// Where programs end, worked out from their text: pulses at 80 steps/mm.
+// Ends of the programs, computed from their text, in pulses at 80 steps/mm.
 const std::map<std::string, std::vector<std::int64_t>> kEnds = {
     // Z ends 2 mm above the last layer, 35.4 mm; E is the sum over all G92 E0: 2644.55913 mm.
     {"octocat.gcode", {400, 400, 2992, 211565}},
@@ -55,7 +56,7 @@ const std::map<std::string, std::vector<std::int64_t>> kEnds = {
     {"dwells.ngc", {0, 0, 0, 80}},
 };
 
-// Tells the hasher of a run's commands.
+// Passes the commands of a run to the hasher.
 class Watch final : public run::Observer {
  public:
   Watch(StepHasher& hasher, const sim::Engine& engine) : hasher_(hasher), engine_(engine) {}
@@ -185,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, Programs,
                                                    kBoth)),
                          run_name);
 INSTANTIATE_TEST_SUITE_P(Dwells, Programs, testing::ValuesIn(runs_of(kData, {"dwells.ngc"}, kBoth)), run_name);
-// Other steps/mm for Y: the circles of the XY plane go out as chords.
+// With other steps/mm for Y, the circles of the XY plane are sent as chords.
 INSTANTIATE_TEST_SUITE_P(Chords, Programs,
                          testing::ValuesIn(runs_of(kExamples, {"relative.ngc", "inch.ngc"}, kBoth,
                                                    "axis.y.steps_per_mm=100")),
@@ -199,7 +200,7 @@ INSTANTIATE_TEST_SUITE_P(Shared, Programs,
                          run_name);
 #endif
 
-// What must change the hashes of a run does.
+// Changes that must change the hashes of a run.
 
 // The program with every match of each expression replaced.
 using Replacements = std::vector<std::pair<const char*, const char*>>;
@@ -253,7 +254,8 @@ TEST_F(Changes, OfTheStartShowInTheStartAlone) {
   EXPECT_EQ(other.start, card_.start - 3);
 }
 
-// On a card without the under-run hold: with it, a motion from rest waits for queues that fill as the bus allows.
+// Uses a card without the under-run hold, because with it a motion from rest waits for queues that fill as fast as the
+// bus allows.
 class BarrierShift : public testing::Test {
  protected:
   const Job job_{kData, "dwells.ngc", sim::EngineKind::kModel, "",
@@ -269,8 +271,8 @@ TEST_F(BarrierShift, IsTakenOffOnceABarrier) {
   EXPECT_NE(shifted.pins, card_.pins);
 }
 
-// Every dwell one clock longer, 10 ns, as on a card that takes a clock more at each barrier. (None of 0 clocks: it
-// takes as long as one of 1.)
+// Every dwell is one clock (10 ns) longer, as on a card that takes one more clock at each barrier. A dwell of 0 clocks
+// is not used, because it takes as long as a dwell of 1 clock.
 TEST_F(BarrierShift, CancelsAClockMoreADwell) {
   const std::pair<const char*, const char*> none_of_0 = {"P0.0000000", "P0.0000500"};
   const std::pair<const char*, const char*> longer = {"G4 P0.[0-9]{6}0", "$&1"};

@@ -20,7 +20,7 @@ void sort_by_axis(std::vector<Step>& steps) {
 
 }  // namespace
 
-// FNV-1a's constants, with the word's high bits brought down, since the product carries upwards only.
+// The constants of FNV-1a. The shift brings the high bits down, because the product carries only upwards.
 void Hash::add(std::uint64_t word) {
   value_ = (value_ ^ word) * 0x100000001B3U;
   value_ ^= value_ >> 29U;
@@ -95,7 +95,7 @@ void StepHasher::pin_step(const driver::PinStep& step) {
 
 void StepHasher::look_at_lead(std::size_t block, std::uint64_t cycle) {
   if (last_block_ && *last_block_ != block) {
-    // A block that is still being written has no time yet: not ahead.
+    // A block that is still being written has no time yet, so it is not ahead.
     const std::uint64_t written = block < sent_at_.size() ? sent_at_[block] : cycle;
     const auto lead = static_cast<std::int64_t>(last_cycle_ - written);
     result_.lead = std::min(result_.lead.value_or(lead), lead);

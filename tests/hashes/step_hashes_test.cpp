@@ -1,4 +1,4 @@
-// The hashes of small step lists that are known: what changes them, and what cancels.
+// The hashes of small known step lists: what changes them, and which changes cancel.
 #include "step_hashes.hpp"
 
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 namespace trammel::test {
 namespace {
 
-// Two lines, a dwell, and a third line; each path step comes with its step at the pin, some clocks later.
+// Two lines, a dwell, and a third line. Each path step has its step at the pin some clocks later.
 struct Steps {
   struct Both {
     driver::PathStep path;
-    std::uint64_t cycle;  // at the pin
+    std::uint64_t cycle;  // cycle at the pin
   };
   std::vector<Both> steps = {
       {{1, 10, 0, 1}, 1010}, {{1, 10, 1, -1}, 1010}, {{1, 30, 0, 1}, 1030},
@@ -20,7 +20,7 @@ struct Steps {
       {{6, 7, 0, 1}, 5007},  {{6, 9, 0, 1}, 5009},
   };
   std::uint64_t first_write = 900;
-  StepHasher::Path path = StepHasher::Path::kNoArc;  // the second
+  StepHasher::Path path = StepHasher::Path::kNoArc;  // of the second line
 };
 
 void send(StepHasher& hasher, const std::vector<driver::Command>& commands, std::uint64_t cycle,
@@ -137,7 +137,7 @@ TEST(Shift, OfABarrierDoesNotHideOneClockBehindIt) {
   EXPECT_NE(hashes_with(slower, {0, 3}).pins, hashes_of({}).pins);
 }
 
-// An arc on the accumulator: path ticks stay in, there is nothing to say of the pins.
+// An arc on the accumulator: its path ticks are included, and there is no hash of the pins.
 TEST(Arcs, HaveNoHashOfThePins) {
   const auto arc = [](Steps& s) { s.path = StepHasher::Path::kArc; };
   EXPECT_FALSE(hashes_with(arc).pins);

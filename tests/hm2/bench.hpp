@@ -1,4 +1,4 @@
-// hostmot2's registers in front of the model card, in simulated time, with a driver of the test's own.
+// hostmot2's registers in front of the model card, in simulated time, with the test's own driver.
 #pragma once
 
 #include <cmath>
@@ -55,14 +55,14 @@ struct Bench {
   void set_rate(unsigned axis, std::int64_t rate) {
     write(static_cast<std::uint16_t>(map_at::kStepRate + 4 * axis), {static_cast<std::uint32_t>(rate)});
   }
-  // Lets the card run, as a server does between two datagrams.
+  // Runs the card for some time, as a server does between two datagrams.
   void run(double seconds) { hostmot2.run_to(engine->cycles() + static_cast<std::uint64_t>(seconds * kClock)); }
   void pet() { write(map_at::kWatchdogReset, {kPet}); }
 
-  // Pulses that have left the pins.
+  // Number of pulses at the pins.
   std::int64_t pins(unsigned axis) const { return steps.position(axis); }
   std::int64_t counter(unsigned axis) { return card.read_snapshot().position[axis]; }
-  // The accumulator, pulses.
+  // The step generator's accumulator, in pulses.
   double place(unsigned axis) {
     return static_cast<std::int32_t>(read(static_cast<std::uint16_t>(map_at::kAccumulator + 4 * axis))) /
            kPulseFraction;
@@ -77,7 +77,7 @@ struct Bench {
   test::Steps steps;
 };
 
-// Pulses per second as hostmot2's driver writes them.
+// A rate in pulses per second, in the unit of hostmot2's register.
 inline std::int64_t rate_of(double pulses_per_second) {
   return static_cast<std::int64_t>(pulses_per_second * (4294967296.0 / kClock));
 }

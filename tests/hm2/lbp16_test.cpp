@@ -1,4 +1,4 @@
-// Datagrams of LBP16: what is taken apart, what is refused and why.
+// Datagrams of LBP16: decoding, refusals and their reasons.
 #include "trammel/hm2/lbp16.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(Lbp16, CommandsAreTakenApart) {
   append_read(datagram, Space::kControl, 2, 8, 1);
   append_write(datagram, 0x2000, {0x01020304, 5});
   append_read(datagram, Space::kHostmot2, 4, 0x2100, 4);
-  // As hm2_eth sends them: the words of its headers, low byte first.
+  // As hm2_eth sends them: header words, low byte first.
   EXPECT_EQ(Bytes(datagram.begin(), datagram.begin() + 4), (Bytes{0x81, 0x59, 0x08, 0x00}));
   EXPECT_EQ(Bytes(datagram.begin() + 4, datagram.begin() + 12), (Bytes{0x82, 0xC2, 0x00, 0x20, 4, 3, 2, 1}));
   std::vector<Command> commands;
@@ -55,7 +55,7 @@ TEST(Lbp16, FormsThatNobodyHereSpeaksAreRefused) {
   EXPECT_EQ(defect_of(long_answer), Defect::kAnswerTooLong);
 }
 
-// Refused as a whole: the good write before the bad command has no effect either.
+// A datagram is refused as a whole: a valid write before the bad command has no effect either.
 TEST(Lbp16, ARefusedDatagramChangesNothingAndGetsNoAnswer) {
   const auto bad_ends = [] {
     std::vector<std::pair<Defect, Bytes>> ends(7);
@@ -69,7 +69,7 @@ TEST(Lbp16, ARefusedDatagramChangesNothingAndGetsNoAnswer) {
     append_read(ends[4].second, Space::kHostmot2, 4, 0x2102, 1);
     ends[5].first = Defect::kReadOnly;
     append_write(ends[5].second, Space::kEeprom, 2, 2, {1, 2});
-    ends[6].first = Defect::kSpace;  // beyond the end
+    ends[6].first = Defect::kSpace;  // exceeds the space
     append_read(ends[6].second, Space::kHostmot2, 4, 0xFFFC, 2);
     return ends;
   }();

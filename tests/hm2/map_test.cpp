@@ -1,4 +1,4 @@
-// What a driver finds before it moves anything: names, IDROM, modules, pins, and the spaces of the Ethernet side.
+// The data that a driver reads before it moves anything: names, IDROM, modules, pins, and the Ethernet side's spaces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST(Hm2Map, TheIdromIsConsistent) {
     EXPECT_EQ(word(10), kClock);
     EXPECT_EQ(word(12), 4U);
     EXPECT_EQ(word(14), 0x100U);
-    // Modules: tag, version, low clock, instances; base and registers; which of them each instance has.
+    // Modules: tag, version, low clock, instances; base and registers; mask of the registers that each instance has.
     const std::uint32_t stepgen = word(1) / 4 + 6;
     EXPECT_EQ(word(stepgen), 5U | 2U << 8 | 1U << 16 | axes << 24);
     EXPECT_EQ(word(stepgen + 1), 0x2000U | 10U << 16);
@@ -58,7 +58,7 @@ TEST(Hm2Map, TheHardwareAddressStandsLastByteFirst) {
   EXPECT_EQ(bench.send(datagram), (Bytes{1, 0, 0x54, 0x41, 0x52, 2}));
 }
 
-// hm2_eth knows by these which of its datagrams came.
+// By these values hm2_eth recognises which of its datagrams arrived.
 TEST(Hm2Map, WhatTheDriverWritesIntoTheTimerSpaceStandsThere) {
   Bench bench;
   Bytes datagram;

@@ -1,4 +1,4 @@
-// Rates to pulses by closed forms, and the accumulator against the pins.
+// Compares pulses with closed forms of the rates, and the accumulator with the pins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace trammel::hm2 {
 namespace {
 
-// A rate of r is r * f / 2^32 pulses a second: pulse k comes (k - 1) * 2^32 / r clocks after the first one.
+// A rate of r is r * f / 2^32 pulses per second: pulse k comes (k - 1) * 2^32 / r clocks after the first one.
 TEST(Hm2Motion, ARateIsStepsPerSecondExactly) {
   for (const std::int64_t rate : {rate_of(100'000), -rate_of(33'333.3), rate_of(1234.5), std::int64_t{7'000'001}}) {
     Bench bench;
@@ -26,12 +26,13 @@ TEST(Hm2Motion, ARateIsStepsPerSecondExactly) {
       farthest =
           std::max(farthest, std::abs(clocks - static_cast<double>(k) * 0x1p32 / std::abs(static_cast<double>(rate))));
     }
-    // A tick of two clocks, and half a pulse of the rounding at the ends of lines (less than one pulse in all).
+    // Each of the two pulses may be off by a tick of two clocks, and by half a pulse (less than one in total) from the
+    // rounding at the ends of lines.
     EXPECT_LE(farthest, 4 + 0x1p32 / std::abs(static_cast<double>(rate))) << rate;
   }
 }
 
-// All that was told, exact to 2^-32 of a pulse: lines of the rate, then rest.
+// The sum of all rates is exact to 2^-32 of a pulse: lines at the rates, then rest.
 TEST(Hm2Motion, PulsesAreTheRoundedSumOfRatesTimesClocks) {
   Bench bench;
   test::Random random(26);
@@ -60,7 +61,7 @@ TEST(Hm2Motion, PulsesAreTheRoundedSumOfRatesTimesClocks) {
   EXPECT_EQ(bench.hostmot2.steps().counts().stale_ticks, 0U);
 }
 
-// At every look: the nearest whole pulse is the counter, which is what left the pins.
+// In every reading, the accumulator rounds to the counter, which equals the pulses at the pins.
 TEST(Hm2Motion, TheAccumulatorIsTheCounterAndItsFractionIsOnTheWay) {
   Bench bench;
   bench.set_rate(0, rate_of(4000));
@@ -73,7 +74,7 @@ TEST(Hm2Motion, TheAccumulatorIsTheCounterAndItsFractionIsOnTheWay) {
     const double place = bench.place(0);
     const auto counter = bench.hostmot2.steps().counters()[0];
     ASSERT_LE(std::abs(place - counter), 0.5);
-    ASSERT_LE(std::abs(bench.pins(0) - counter), 1);  // one may have come after the look
+    ASSERT_LE(std::abs(bench.pins(0) - counter), 1);  // one pulse may have come after the reading
     const double clocks = static_cast<double>(bench.engine->cycles() - before);
     farthest = std::max(farthest, std::abs(place - last - clocks * 4000 / kClock));
     last = place;
@@ -81,7 +82,7 @@ TEST(Hm2Motion, TheAccumulatorIsTheCounterAndItsFractionIsOnTheWay) {
   EXPECT_LT(farthest, 0.1) << "pulses from a steady velocity, between two looks";
 }
 
-// From the datagram to the line that has the new rate: the lead at least, lead and line at most.
+// From the datagram to the line with the new rate it takes at least the lead, and at most lead and line.
 TEST(Hm2Motion, ARateTakesEffectWithinLeadAndLine) {
   Bench bench;
   test::Random random(5);
@@ -120,7 +121,7 @@ TEST(Hm2Motion, ARateBeyondTheStepTimesIsClampedAndNoPulseIsCountedThatWasNotMad
   EXPECT_EQ(bench.hostmot2.bites(), 0U);
 }
 
-// hm2_eth gives the longest times to axes that nobody has set.
+// hm2_eth writes the longest times for axes that are not configured.
 TEST(Hm2Motion, LongStepTimesOfAnAxisThatStandsDelayNobody) {
   Bench bench;
   bench.write(map_at::kStepLength, {10, 0x3FFF, 0x3FFF, 0x3FFF});
@@ -151,7 +152,7 @@ TEST(Hm2Motion, TheLongestStepTimesMoveToo) {
   EXPECT_EQ(bench.pins(0), bench.counter(0));
 }
 
-// New step times wait for rest: no pulse is cut.
+// New step times wait until the axis is at rest, so that no pulse is cut.
 TEST(Hm2Motion, StepTimesThatComeInMotionCountFromTheNextRestOn) {
   Bench bench;
   bench.set_rate(0, rate_of(10'000));
@@ -166,7 +167,7 @@ TEST(Hm2Motion, StepTimesThatComeInMotionCountFromTheNextRestOn) {
   EXPECT_EQ(bench.engine->read(card_map::reg::step_length(0)), 77U);
 }
 
-// An axis that is told to be a third of a pulse away from a whole one stays there, over rests.
+// A fraction of a pulse is kept at rest: the commanded fractions add up over many moves.
 TEST(Hm2Motion, FractionsOfPulsesOutliveRests) {
   Bench bench;
   double told = 0;

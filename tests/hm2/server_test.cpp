@@ -1,4 +1,4 @@
-// The server on a UDP port of this machine: answers in order, one driver at a time, and sleep while nothing is due.
+// The server on a local UDP port: answers in order, one driver at a time, and sleep while nothing is due.
 #include "trammel/hm2/server.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ struct ServerBench : Bench {
     append_read(datagram, Space::kTimer, 2, 0x10, 1);
     return datagram;
   }
-  // Marks of the answers that have come.
+  // First bytes of the answers that have arrived.
   static std::vector<int> answers(UdpPort& to) {
     std::vector<int> marks;
     Datagram datagram;
@@ -106,7 +106,7 @@ TEST(Hm2Server, BehindABiteADriverThatIsStartedAnewIsTakenAtOnce) {
   EXPECT_EQ(ServerBench::answers(anew), std::vector<int>{7});
 }
 
-// Without a watchdog too.
+// Also without a watchdog.
 TEST(Hm2Server, ADriverThatFallsSilentStopsTheMotion) {
   ServerBench bench;
   Bytes rate;

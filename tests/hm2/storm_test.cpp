@@ -1,5 +1,5 @@
-// Bad networks: datagrams of random bytes, and a driver in a closed loop whose datagrams get lost, come twice or in
-// another order.
+// Bad networks: datagrams of random bytes, and a driver in a closed loop whose datagrams are lost, repeated or
+// reordered.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ std::uint64_t storm_seed() {
   return text == nullptr ? 2026 : std::strtoull(text, nullptr, 10);
 }
 
-// A command that a card takes; rates, which move it, more often than others.
+// Appends a valid command. Rates, which cause motion, are more frequent than others.
 void append_good(Bytes& datagram, test::Random& random) {
   const auto word = [&] { return static_cast<std::uint32_t>(random.below(0x10000) << 16 | random.below(0x10000)); };
   const auto address = static_cast<std::uint16_t>(4 * random.below(0xB00));
@@ -36,7 +36,7 @@ void append_good(Bytes& datagram, test::Random& random) {
   }
 }
 
-// Any space, unit, address and length.
+// Appends a command with any space, unit, address and length.
 void append_any(Bytes& datagram, test::Random& random) {
   const auto address = static_cast<std::uint16_t>(random.below(0x10000));
   const auto space = static_cast<Space>(random.below(8));
@@ -96,13 +96,13 @@ TEST(Hm2Storm, RandomDatagramsNeverCrashAndNeverMakeTheCounterWrong) {
             << " answered, " << bench.steps.pins.size() << " pulses\n";
 }
 
-// A servo loop of the test's own: velocity forward, half of the position's error per period.
+// The test's own servo loop: feed-forward of the velocity, and half of the position error per period.
 class Loop {
  public:
   Loop(Bench& bench, std::uint64_t seed, double lose, double twice)
       : bench_(bench), random_(seed), lose_(lose), twice_(twice) {}
 
-  // One period: read, then write, each of which may be lost, or come a second time a period later.
+  // One period: a read, then a write. Each may be lost, and a write may be repeated at once or a period later.
   void period(double target) {
     bench_.pet();
     if (const auto place = read_place()) place_ = *place;
@@ -122,7 +122,7 @@ class Loop {
       if (chance(twice_)) bench_.send(datagram);
       if (chance(twice_)) late_ = datagram;
     }
-    if (late) bench_.send(*late);  // behind the newer one
+    if (late) bench_.send(*late);  // after the newer rate
     bench_.run(kPeriod * 3 / 4);
     farthest = std::max(farthest, std::abs(bench_.place(0) - offset_ - target));
   }
@@ -150,7 +150,7 @@ class Loop {
   std::optional<Bytes> late_;
 };
 
-// `periods`: a multiple of 750, at whose end the sine is where it began.
+// `periods`: a multiple of 750, so that the sine ends at its start.
 double follow_sine(int periods, double lose, double twice, int* lost) {
   Bench bench;
   bench.write(map_at::kWatchdogTimer, {kClock / 20 - 1});
@@ -170,8 +170,8 @@ TEST(Hm2Storm, ALoopEndsAtItsTargetWithEveryHundredthDatagramLost) {
   const double farthest = follow_sine(1500, 0.01, 0, &lost);
   std::cout << lost << " datagrams lost; at most " << farthest << " pulses from the target\n";
   EXPECT_GT(lost, 15);
-  // A lost rate holds the one before: 8.4 pulses a period at the fastest, changing by 0.07 a period; a lost reading is
-  // half of a period's way.
+  // After a lost rate the previous one holds. The rate is at most 8.4 pulses per period and changes by 0.07 per period.
+  // A lost reading costs half of a period's travel.
   EXPECT_LT(farthest, 20);
 }
 

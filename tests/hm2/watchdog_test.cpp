@@ -1,5 +1,5 @@
-// The watchdog: a bite ends the motion at once, the counter stays that of the pins, and nothing moves until the driver
-// has cleared it and commands again. Peers go on counting after a bite while their pins are silent.
+// The watchdog: a bite ends the motion at once, the counter stays equal to the pins, and nothing moves until the driver
+// has cleared the bite and commands again. Other cards go on counting after a bite while their pins are silent.
 #include "trammel/hm2/watchdog.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace trammel::hm2 {
 namespace {
 
-constexpr std::uint32_t kFiveMilliseconds = kClock / 200 - 1;  // timer + 1 clocks
+constexpr std::uint32_t kFiveMilliseconds = kClock / 200 - 1;  // expires after timer + 1 clocks
 
 TEST(Hm2Watchdog, ItsTimeIsTheTimerAndOneClock) {
   Watchdog watchdog;
@@ -78,7 +78,7 @@ TEST(Hm2Watchdog, AfterABiteNothingMovesUntilItIsClearedAndCommandedAnew) {
   bench.run(0.02);
   ASSERT_EQ(bench.read(map_at::kWatchdogStatus), 1U);
   const std::int64_t stood = bench.pins(0);
-  for (int n = 0; n < 50; ++n) {  // a driver that has not noticed
+  for (int n = 0; n < 50; ++n) {  // a driver that has not noticed the bite
     bench.set_rate(0, rate_of(20'000));
     bench.pet();
     bench.run(0.001);
@@ -96,7 +96,7 @@ TEST(Hm2Watchdog, AfterABiteNothingMovesUntilItIsClearedAndCommandedAnew) {
   EXPECT_EQ(bench.pins(0), bench.counter(0));
 }
 
-// As hm2_eth ends: a time of two clocks.
+// The way in which hm2_eth ends: a timer of two clocks.
 TEST(Hm2Watchdog, ADriverThatLeavesInOrderStopsTheMotion) {
   Bench bench;
   move_under_watchdog(bench, 20'000, 10);
@@ -107,7 +107,7 @@ TEST(Hm2Watchdog, ADriverThatLeavesInOrderStopsTheMotion) {
   EXPECT_LT(bench.steps.pins.back().cycle, left + kClock / 10'000);
 }
 
-// A fault of the card ends the motion by itself; the driver sees it as a bite.
+// A fault of the card ends the motion. The driver sees it as a bite.
 TEST(Hm2Watchdog, AFaultOfTheCardShowsAsABiteUntilItsCauseHasGone) {
   Bench bench;
   bench.set_rate(0, rate_of(20'000));

@@ -29,7 +29,8 @@ TEST(Circle, SteerMakesTableThree) {
   }
 }
 
-// Table 2 says the same as the sentence it codes: outside or on the circle go towards the axis, inside away from it.
+// Table 2 agrees with the sentence that it codes: outside or on the circle step towards the axis, inside step away from
+// it.
 TEST(Circle, TableTwoTurnsInItsSense) {
   for (const bool clockwise : {false, true}) {
     for (const std::int64_t f : {-1, 0}) {
@@ -62,14 +63,13 @@ TEST(Circle, SteerFullCirclesTakeEightRadii) {
       largest = std::max(largest, walked.largest);
     }
   }
-  // The supremum is met: the first step leads to (R - 1, 0).
+  // The maximum is reached: the first step leads to (R - 1, 0).
   EXPECT_LE(largest, 1.0);
   EXPECT_GT(largest, 0.99);
 }
 
 TEST(Circle, SteerHangsAtRadiusOneAndZero) {
-  // By the listing, two of the eight walks of radius 1 hang: it is the start and the direction, not the direction
-  // alone.
+  // In the listing, two of the eight walks of radius 1 hang, depending on the start and the direction together.
   for (const Point start : {Point{1, 0}, Point{0, 1}, Point{-1, 0}, Point{0, -1}}) {
     for (const bool clockwise : {false, true}) {
       const bool hangs = clockwise ? start == Point{0, 1} : start == Point{1, 0};
@@ -80,7 +80,7 @@ TEST(Circle, SteerHangsAtRadiusOneAndZero) {
   EXPECT_EQ(SteerProgram({0, 0}, 0, false).steps_to_return(), 4u);  // a square
 }
 
-// From a radius above 1 on no walk of small circles passes the centre.
+// Above a radius of 1, no walk of a small circle passes the centre.
 TEST(Circle, SteerPassesTheCentreAtRadiusOneAlone) {
   for (std::int64_t x = -4; x <= 4; ++x) {
     for (std::int64_t y = -4; y <= 4; ++y) {
@@ -141,8 +141,8 @@ TEST(Circle, EightDirectionsStayWithinHalfAPulse) {
   EXPECT_LE(lattice_start, 0.518);
 }
 
-// Every start within a square and every end that a rounded point could be: the curve part near, the end exact, and
-// never as long as the bound.
+// Every start in a square and every end that rounding can produce: the walk stays near the curve, ends exactly, and
+// never uses up its bound of steps.
 TEST(Arc, ExhaustiveSmallArcsEndExactly) {
   std::uint64_t arcs = 0;
   for (std::int64_t sx = -9; sx <= 9; ++sx) {
@@ -161,7 +161,7 @@ TEST(Arc, ExhaustiveSmallArcsEndExactly) {
               ASSERT_EQ(walked.end, (Position{ex, ey, 0, 0}))
                   << info(method).name << " " << sx << "," << sy << ",0,0," << ex << "," << ey << " cw " << clockwise;
               ++arcs;
-              // 1.71: a rounded end of its own 0.71 off; the DDA spirals out.
+              // 1.71 includes a rounded end, which is itself 0.71 off; the DDA spirals outwards.
               const bool dda = method == Method::kDda || method == Method::kDdaHalf;
               ASSERT_LT(walked.largest, dda ? 7 : 1.7072) << info(method).name;
             }
@@ -176,7 +176,7 @@ TEST(Arc, ExhaustiveSmallArcsEndExactly) {
   EXPECT_GT(arcs, 150'000u);
 }
 
-// The angle that a walk turns by is the sweep that the points command, to what rounding and the lattice allow.
+// The angle of a walk is the sweep that the points command, within rounding and the lattice.
 TEST(Arc, RandomArcsEndExactlyAfterTheirSweep) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -316,7 +316,7 @@ TEST(Ellipse, RandomArcsEndExactly) {
   }
 }
 
-// The deviation that additions keep is the one that the equation gives, at the ends of the widths too.
+// The deviation from additions equals that of the equation, also at the ends of the widths.
 TEST(Ellipse, DeviationStaysItsClosedForm) {
   const std::int64_t most = kMaxSemiAxis;
   for (const auto& [a, b] :

@@ -1,5 +1,5 @@
-// The accumulator's 8-direction rule beside the minimum deviation among the methods: two statements of one rule, and on
-// circles of whole radius the same steps.
+// The 8-direction rule of the accumulator against the method of minimum deviation: two forms of one rule, with the same
+// steps on circles of whole radius.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -34,7 +34,7 @@ TEST(CardsRule, TakesTheStepsOfMinimumDeviation) {
       ASSERT_TRUE(card.at_end()) << "r " << r;
     }
   }
-  EXPECT_GT(steps, 5'000'000u);  // 4 sqrt(2) R each
+  EXPECT_GT(steps, 5'000'000u);  // 4 sqrt(2) R per circle
 }
 
 }  // namespace

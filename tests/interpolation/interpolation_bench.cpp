@@ -1,4 +1,4 @@
-// Steps a second of every method on one core. Targets: 100 M for lines on two axes, 50 M for circles.
+// Steps per second of every method on one core. Targets: 100 M for lines on two axes, 50 M for circles.
 #include <benchmark/benchmark.h>
 
 #include <string>

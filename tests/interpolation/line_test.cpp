@@ -1,4 +1,4 @@
-// Lines against the papers' vectors and closed forms.
+// Lines against the vectors of the papers and closed forms.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -58,7 +58,7 @@ TEST(Line, IntegerDividersStrayAtFiftyMegahertz) {
   EXPECT_NEAR(error(second, 3), 7.59, 0.005);
 }
 
-// The position in every clock, from the definition, against the walk that goes from pulse to pulse.
+// The position in every clock from the definition, against the walk from pulse to pulse.
 TEST(Line, PulseTrainsAreTheirClosedForms) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 2000; ++i) {
@@ -122,7 +122,7 @@ TEST(Line, ErrorBounds) {
   EXPECT_LE(of(Method::kOneShot), std::sqrt(0.5) + 1e-9);
   EXPECT_LT(of(Method::kOneShotZero), 1);
   EXPECT_LT(of(Method::kDda), 1);
-  // The bounds are not idle.
+  // Lower bounds, so that the upper bounds are not too wide.
   EXPECT_GT(of(Method::kSteer), 0.9);
   EXPECT_GT(of(Method::kMinDeviation8), 0.49);
   EXPECT_GT(of(Method::kOneShot), 0.69);

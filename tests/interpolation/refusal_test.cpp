@@ -1,4 +1,4 @@
-// What make_interpolator refuses, each with its reason, and what it lets through.
+// Curves that make_interpolator refuses, each with its reason, and curves that it accepts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ TEST(Refusal, Velocities) {
   EXPECT_THAT(reason(Method::kOneShot, line, {kHuge, 1, 1}), HasSubstr("2^61"));
   EXPECT_THAT(reason(Method::kOneShot, line, {1u << 31, 1, std::uint64_t{1} << 40}), HasSubstr("2^61"));
   EXPECT_THAT(reason(Method::kOneShot, line, {1'000'000, kHuge, 1}), HasSubstr("2^30"));
-  // A line may last longer than a second, and a fraction of a clock more than a whole number of them.
+  // A line may last longer than a second, and a fraction of a clock longer than a whole number of clocks.
   EXPECT_EQ(make_interpolator(Method::kOneShot, line, {1'000'000, 2, 3}).total_time(), 1'500'000u);
   EXPECT_EQ(make_interpolator(Method::kOneShot, line, {1'000'000, 3, 1}).total_time(), 333'334u);
 }

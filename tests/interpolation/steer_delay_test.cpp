@@ -1,4 +1,4 @@
-// STEER's delay against the paper's list, and its defects.
+// The delay of STEER against the list in the paper, and its defects.
 #include "trammel/interpolation/steer_delay.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(SteerDelay, BelowThirtyTheLoopRunsUntilItWraps) {
     EXPECT_FALSE(delay.delay());
   }
   EXPECT_EQ(SteerDelay(30).delay(), 1);
-  // A line hides it at first: its drag fills up what is missing.
+  // On a line this does not show at first, because the drag fills up what is missing.
   SteerDelay line(20);
   line.arm();
   int steps = 0;

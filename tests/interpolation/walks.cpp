@@ -16,7 +16,7 @@ double from_ellipse(double semi_x, double semi_y, const Position& p) {
     return std::hypot(semi_x * foot - x, semi_y * std::sqrt(1 - foot * foot));
   }
   if (x == 0) return std::fabs(y - semi_y);
-  // The foot is (r x / (s + r), y / (s + 1)) with r = (a / b)^2, where s makes it lie on the ellipse.
+  // The foot of the perpendicular is (r x / (s + r), y / (s + 1)) with r = (a / b)^2; s puts it on the ellipse.
   const double r = (semi_x / semi_y) * (semi_x / semi_y);
   const double z0 = x / semi_x;
   const double z1 = y / semi_y;

@@ -1,4 +1,4 @@
-// What the tests of the interpolators share: whole walks and exact or double distances.
+// Shared by the tests of the interpolators: whole walks, and distances (exact or double).
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace trammel::interpolation {
 struct Walked {
   Position end{};
   std::uint64_t steps = 0;
-  double largest = 0;  // of the distance that was asked for, after every step
+  double largest = 0;  // largest distance after any step
 };
 
-// Walks to the end, at most `limit` steps; distance(position) in pulses.
+// Walks to the end or for `limit` steps; distance(position) is in pulses.
 template <class Walk, class Distance>
 Walked walk_all(Walk walk, std::uint64_t limit, Distance distance) {
   Walked result;
@@ -43,10 +43,11 @@ inline double from_circle(double radius, const Position& p) {
   return std::fabs(std::hypot(static_cast<double>(p[0]), static_cast<double>(p[1])) - radius);
 }
 
-// Distance from the axis-aligned ellipse about the origin, by bisection of the foot point's equation.
+// Distance from the axis-aligned ellipse around the origin, by bisection of the equation of the foot of the
+// perpendicular.
 double from_ellipse(double semi_x, double semi_y, const Position& p);
 
-// "y y x" for a line or an arc in 4 directions.
+// Axes of the steps, such as "yyx", for a line or an arc in 4 directions.
 template <class Walk>
 std::string axes_of(Walk walk) {
   std::string result;

@@ -1,4 +1,4 @@
-// Kinematics against closed forms written here: positions, the inverse, rates, what becomes of circles.
+// Kinematics against closed forms in this file: positions, the inverse, rates, and the images of circles.
 #include "trammel/kinematics/kinematics.hpp"
 
 #include <gmock/gmock.h>
@@ -83,7 +83,8 @@ TEST(CoreXy, ACircleIsAMirroredOneAndOnlyThere) {
   EXPECT_TRUE(xy->circle);
   EXPECT_TRUE(xy->mirrored);
   EXPECT_DOUBLE_EQ(xy->scale_x, 80 * std::sqrt(2.0));
-  // A point that goes round once, in pulses: its distance from the centre's pulses, and the side it turns to.
+  // A point moves once around the circle. Checks, in pulses, its distance from the centre and its direction of
+  // rotation.
   const auto at = [&](double angle) {
     const Coordinates point{5 + 3 * std::cos(angle), -2 + 3 * std::sin(angle)};
     return std::pair{k.pulse_rate(xy->joint_x, point), k.pulse_rate(xy->joint_y, point)};

@@ -1,5 +1,5 @@
-// The bridge on the golden model, in simulated time: LinuxCNC's targets against the card's steps, and all that stops
-// and starts a machine.
+// The bridge on the golden model, in simulated time: compares LinuxCNC's targets with the card's steps, and tests the
+// causes that stop and start a machine.
 #include "trammel/linuxcnc/bridge.hpp"
 
 #include <gmock/gmock.h>
@@ -13,13 +13,13 @@ namespace {
 
 bool is_stopped(const ServoBench& bench) { return (bench.status().flags & TRAMMEL_STATUS_FAULT) != 0; }
 
-// Goes on until the card stands.
+// Runs periods until the card is at rest.
 void come_to_rest(ServoBench& bench, std::uint32_t flags = 0) {
   for (int n = 0; n < 2000 && bench.card->busy(); ++n) bench.period({}, flags);
   EXPECT_FALSE(bench.card->busy());
 }
 
-// 4,000 periods, each target within half a pulse; the clock of the model is LinuxCNC's to 50 parts in a million.
+// 4,000 periods, each target met within half a pulse. The clocks of the model and of LinuxCNC differ by up to 50 ppm.
 TEST(Bridge, MeetsEveryTargetWithinHalfAPulse) {
   for (const int drift : {0, 1, -1}) {
     ServoBench bench;
@@ -50,7 +50,7 @@ TEST(Bridge, PositionsCountFromTheCardsMachineZero) {
   for (int n = 0; n < 10; ++n) bench.period({100}, 0);
   EXPECT_EQ(bench.status().position[0], 100);
   EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_IDLE});
-  // A new stream begins there.
+  // A new stream starts at this position.
   for (int n = 0; n < 10; ++n) bench.period({100});
   for (int n = 1; n <= 50; ++n) bench.period({100.0 - n});
   for (int n = 0; n < 10; ++n) bench.period({50});
@@ -72,7 +72,7 @@ TEST(Bridge, DisabledInMotionItRampsDownAlongItsLine) {
   EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_IDLE});
 }
 
-// At rest nothing is lost; in motion it is a stop.
+// At rest, a missing period has no effect. In motion it is a stop.
 TEST(Bridge, AMissingPeriodAtRestIsCountedAndForgotten) {
   ServoBench bench;
   bench.enable();
@@ -85,7 +85,7 @@ TEST(Bridge, AMissingPeriodAtRestIsCountedAndForgotten) {
   EXPECT_EQ(bench.status().position[0], 100);
 }
 
-// The card is back before LinuxCNC has moved on too far for a line.
+// The card is ready again before LinuxCNC has moved too far for one line.
 TEST(Bridge, AMotionRightBehindAMissingPeriodAtRestIsFollowed) {
   ServoBench bench;
   bench.enable();
@@ -103,22 +103,22 @@ TEST(Bridge, AMissingPeriodInMotionStopsUntilItIsCleared) {
   ServoBench bench;
   bench.enable();
   for (int n = 1; n <= 200; ++n) bench.period({n * 5.0});
-  bench.pass(200 * kServoClocks);  // the owner sleeps: the card ramps down alone
+  bench.pass(200 * kServoClocks);  // the owner sleeps, so the card ramps down by itself
   for (int n = 0; n < 10; ++n) bench.period({1000 + n * 5.0});
   ASSERT_TRUE(is_stopped(bench));
   EXPECT_EQ(bench.status().cause, 11U);  // MISSING_PERIOD is bit 10
   EXPECT_EQ(bench.status().missing, 1U);
   const std::int64_t stands = bench.status().position[0];
   EXPECT_GT(stands, bench.status().stop_position[0]);
-  // Neither the targets, nor the clear move it, nor both.
+  // It moves neither by the targets nor by the clear, nor by both.
   for (int n = 0; n < 50; ++n) bench.period({2000 + n * 5.0});
   for (int n = 0; n < 50; ++n) bench.period({2000}, TRAMMEL_PERIOD_ENABLE | TRAMMEL_PERIOD_CLEAR);
   EXPECT_FALSE(is_stopped(bench));
-  // Longer than the time base takes to come back.
+  // This is longer than the time base needs to return.
   for (int n = 0; n < 600; ++n) bench.period({2000 + n * 5.0});
   EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
   EXPECT_EQ(bench.status().position[0], stands);
-  // Disabled and enabled where it stands, it moves.
+  // It moves after the machine was disabled, and enabled at this position.
   const double at = static_cast<double>(stands);
   bench.enable({at});
   for (int n = 1; n <= 100; ++n) bench.period({at + n});
@@ -139,7 +139,7 @@ TEST(Bridge, ATargetThatIsTooFarStopsOnARampAndIsNamed) {
   EXPECT_LT(bench.status().position[0], 1800);
 }
 
-// 1 % never come: the next line is longer by it, and every target that came is met.
+// 1 % of the periods never arrive. The next line is longer by such a period, and each target that arrived is met.
 TEST(Bridge, DroppedPeriodsAreMadeUp) {
   ServoBench bench;
   bench.enable();
@@ -162,7 +162,7 @@ TEST(Bridge, DroppedPeriodsAreMadeUp) {
   EXPECT_EQ(bench.status().missing, 0U);
 }
 
-// A period comes later than the lead: the card goes on along its line, and comes back to the targets.
+// A period arrives later than the lead: the card continues along its line, and then returns to the targets.
 TEST(Bridge, ALatePeriodIsCaughtUp) {
   ServoBench bench;
   bench.enable();
@@ -176,7 +176,7 @@ TEST(Bridge, ALatePeriodIsCaughtUp) {
   EXPECT_EQ(bench.status().position[0], 800);
 }
 
-// The component finds the ring full and drops periods; the card has stopped long before.
+// The component finds the ring full and drops periods. The card has stopped long before.
 TEST(Bridge, AFullRingStopsTheMachine) {
   ServoBench bench;
   bench.enable();
@@ -243,7 +243,7 @@ TEST(Bridge, AnEmergencyStopStaysUntilItIsCleared) {
   EXPECT_FALSE(is_stopped(bench));
 }
 
-// LinuxCNC goes on enabled: the new owner's card stands.
+// LinuxCNC stays enabled, but the card of the new owner stays at rest.
 TEST(Bridge, ANewOwnerMovesNothingBeforeTheMachineWasDisabled) {
   ServoBench bench;
   for (int n = 1; n <= 200; ++n) bench.period({n * 2.0});
@@ -254,7 +254,7 @@ TEST(Bridge, ANewOwnerMovesNothingBeforeTheMachineWasDisabled) {
   EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_STREAMING});
 }
 
-// What comes while the card is held is done behind it; eight seconds at rest fills no queue.
+// Targets that come during a hold are followed after it. Eight seconds at rest do not fill a queue.
 TEST(Bridge, AHoldLosesNothing) {
   ServoBench bench;
   bench.enable();

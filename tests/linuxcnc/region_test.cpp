@@ -1,4 +1,5 @@
-// The owner's end of the shared memory: who may own it, what a new owner finds, records that are being written.
+// The owner's end of the shared memory: its only owner, the state that a new owner finds, and records that are read
+// while they are written.
 #include "trammel/linuxcnc/region.hpp"
 
 #include <fcntl.h>
@@ -74,7 +75,7 @@ TEST(Region, ANewOwnerDropsWhatWasMeantForTheOneBefore) {
   EXPECT_NE(region.memory().status.session, session);
 }
 
-// A module that lives has another version: nothing of its memory is touched.
+// A module of another version still runs, so its memory is not changed.
 TEST(Region, RefusesModulesOfAnotherVersion) {
   const RegionFolder folder;
   const std::string path = folder.path + "/" TRAMMEL_REGION_PREFIX "one";
@@ -132,7 +133,7 @@ TEST(Region, AStatusIsWholeWhenItsSequenceIsEven) {
       for (unsigned n = 1; n < TRAMMEL_JOINTS; ++n) torn += copy.position[n] != copy.position[0] ? 1 : 0;
     }
   });
-  // Until the reader, which may begin late on a busy machine, has had a thousand copies out of this traffic.
+  // Publishes until the reader, which may start late on a busy machine, has read a thousand copies.
   trammel_status status{};
   for (std::int64_t n = 0; n < 100'000 || read < 1000; ++n) {
     for (std::int64_t& position : status.position) position = n;
@@ -150,7 +151,7 @@ TEST(Region, WakesWhenItIsTold) {
   const auto begun = std::chrono::steady_clock::now();
   region.wait(10s);
   EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s);
-  region.wait(1ms);  // nothing has come: until the time is over
+  region.wait(1ms);  // nothing arrives, so it waits for the whole time
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // LinuxCNC's side and a card in one thread and in simulated time: a component that writes periods into the shared
-// memory, the bridge, and the golden model, whose steps are compared with what was commanded.
+// memory, the bridge, and the golden model, whose steps are compared with the commanded targets.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,10 +21,10 @@
 
 namespace trammel::linuxcnc {
 
-inline constexpr std::uint64_t kServoClocks = 1000;  // of a period, at 1 MHz
+inline constexpr std::uint64_t kServoClocks = 1000;  // clocks per period at 1 MHz
 inline constexpr double kFraction = driver::PositionStream::kPulse;
 
-// A folder of its own, which goes with it.
+// A temporary folder, removed with the object.
 class RegionFolder {
  public:
   RegionFolder() {
@@ -41,12 +41,12 @@ inline machine::Machine servo_machine() {
                                 "servo_machine");
 }
 
-// An input that has its level from a motor's pulse on.
+// An input that changes to `level` when a motor reaches `pulse`.
 struct ServoEdge {
   unsigned input = 0;
   unsigned axis = 0;
   std::int64_t pulse = 0;
-  bool level = true;  // from there on
+  bool level = true;  // from that pulse on
 };
 
 class ServoBench : public driver::StepSink, public ServoRecord {
@@ -68,7 +68,7 @@ class ServoBench : public driver::StepSink, public ServoRecord {
     bridge.emplace(region, *card, bus, servo_machine(), *paths, options);
   }
 
-  // Of the component: writes a period, as many as there are slots.
+  // The component's work: writes a period. False if the ring is full.
   bool post(const Targets& targets, std::uint32_t flags = TRAMMEL_PERIOD_ENABLE) {
     trammel_region& memory = region.memory();
     trammel_period period{};
@@ -81,16 +81,16 @@ class ServoBench : public driver::StepSink, public ServoRecord {
     ++memory.period_head;
     return true;
   }
-  // The card's time goes on to the next period; inputs follow the motors.
+  // Runs the card until the next period. The inputs follow the motors.
   void pass(std::uint64_t clocks = kServoClocks) {
     due += clocks;
-    if (engine->cycles() > due) due = engine->cycles();  // the bridge has waited for the card
+    if (engine->cycles() > due) due = engine->cycles();  // the bridge has run the card while it waited
     if (edges.empty() && engine->cycles() < due) engine->wait(due - engine->cycles());
     while (engine->cycles() < due) {
       engine->wait(std::min<std::uint64_t>(10, due - engine->cycles()));
       for (const ServoEdge& edge : edges) {
         const std::int64_t at = engine->positions()[edge.axis];
-        if (at >= edge.pulse && !met) met = at;  // while the bridge uses the card, inputs stay as they are
+        if (at >= edge.pulse && !met) met = at;  // inputs do not change while the bridge uses the card
         engine->set_input(edge.input, (at >= edge.pulse) == edge.level);
       }
     }
@@ -100,11 +100,11 @@ class ServoBench : public driver::StepSink, public ServoRecord {
     bridge->turn(std::chrono::nanoseconds(0));
     pass();
   }
-  // Disabled, then enabled, at rest at these places.
+  // Disables and then enables the machine, at rest at these positions.
   void enable(const Targets& at = {}) {
     due = engine->cycles();
     for (int n = 0; n < 3; ++n) period(at, 0);
-    // Behind a stop the time base takes its ramp to come back.
+    // After a stop, the time base needs its ramp to return.
     for (int n = 0; n < 1000 && status().state != TRAMMEL_STREAMING; ++n) period(at);
     for (int n = 0; n < 10; ++n) period(at);
   }
@@ -120,8 +120,8 @@ class ServoBench : public driver::StepSink, public ServoRecord {
   void line(const trammel_period& period, std::int64_t) override { lines.push_back(period); }
   void closed(std::uint64_t) override {}
 
-  // The largest distance between the end of a line and its target, pulses; of lines that were all run. The first two
-  // commands are lines, the third one is the FEED.
+  // Largest distance between the end of a line and its target, in pulses. All lines must have ended. The first two
+  // commands are lines, and the third is the FEED.
   double farthest() const {
     double most = 0;
     std::array<std::int64_t, card_map::kMaxAxes> position = origin;
@@ -153,16 +153,16 @@ class ServoBench : public driver::StepSink, public ServoRecord {
   std::unique_ptr<PathSide> paths;
   std::optional<Bridge> bridge;
   std::vector<ServoEdge> edges;
-  std::optional<std::int64_t> met;  // the pulse at which the first edge came
+  std::optional<std::int64_t> met;  // position at which the first edge came
   std::vector<std::string> notes;
   std::uint64_t number = 0;
   std::uint64_t due = 0;
   std::array<std::int64_t, card_map::kMaxAxes> origin{};
   std::vector<driver::PathStep> steps;  // since the stream was opened
-  std::vector<trammel_period> lines;    // likewise
+  std::vector<trammel_period> lines;    // periods since the stream was opened
 };
 
-// Three joints on sines that begin and end at rest.
+// Three joints on sines that start and end at rest.
 inline ServoBench::Targets servo_sines(int n, int periods) {
   constexpr double kTurn = 6.283185307179586;
   const double share = static_cast<double>(n) / periods;

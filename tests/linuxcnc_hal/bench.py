@@ -13,6 +13,9 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parent / "support"))
+import namespaces  # noqa: E402
+
 EXAMPLE = HERE.parent.parent / "examples" / "linuxcnc"
 MODULES = "/usr/lib/linuxcnc/modules"
 USER = "nobody"  # rtapi_app refuses root; the owner must be the same user
@@ -30,7 +33,7 @@ class Bench:
             shutil.copy(module, self.folder / "modules")
         for file in EXAMPLE.iterdir():
             shutil.copy(file, self.folder)
-        for file in [*HERE.glob("*.py"), HERE.parent / "support" / "linuxcnc_ui.py"]:
+        for file in [*HERE.glob("*.py"), *(HERE.parent / "support").glob("*.py")]:
             shutil.copy(file, self.folder)
         self.memory = pathlib.Path(f"/dev/shm/trammel-linuxcnc.{self.name}")
         self.owners = []
@@ -46,8 +49,7 @@ class Bench:
                 owner.kill()
             owner.wait()
         if self.process is not None and self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
+            namespaces.end(self.process)
         self.memory.unlink(missing_ok=True)
         if kind is None:
             shutil.rmtree(self.folder)
@@ -110,7 +112,7 @@ class Bench:
         """halrun or linuxcnc, as the first process of its namespace: all of it ends with it."""
         mounts = f"mount -t tmpfs tmpfs /tmp && mount --bind {self.folder}/modules {MODULES} && exec \"$@\""
         self.process = subprocess.Popen(
-            ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "--",
+            ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--mount-proc", "--",
              "sh", "-c", mounts, "sh", *self.as_user(arguments)],
             cwd=self.folder, env=self.environment(), stdin=subprocess.DEVNULL,
             stdout=open(self.folder / "linuxcnc.out", "w"), stderr=subprocess.STDOUT)

@@ -14,6 +14,9 @@ import sys
 import tempfile
 import time
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import namespaces  # noqa: E402
+
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples" / "linuxcnc-hm2"
 CARD, DRIVER = "192.168.81.2", "192.168.81.1"
 USER = "nobody"
@@ -116,7 +119,7 @@ class Bench:
         environment = {"HOME": "/tmp", "PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "LANG": "C.UTF-8"}
         self.output_file = self.folder / "output.txt"
         with self.output_file.open("w") as output:
-            process = subprocess.Popen(["unshare", "-m", "-i", "-p", "-f", "--kill-child", "--mount-proc", "sh", "-c", mount, "-", *command],
+            process = subprocess.Popen(["unshare", "-m", "-i", "-p", "-f", "--mount-proc", "sh", "-c", mount, "-", *command],
                                     stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=environment)
         wait_until(lambda: rtapi_app() or process.poll() is not None, 20, "rtapi_app")
         if self.realtime and rtapi_app():
@@ -130,8 +133,7 @@ class Bench:
         try:
             process.wait(seconds)
         except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+            namespaces.end(process)
             raise AssertionError(f"LinuxCNC's side has not ended within {seconds} s:\n{self.output()}\n{self.notes()}")
 
     def run(self, seconds, *command):

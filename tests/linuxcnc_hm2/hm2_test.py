@@ -86,8 +86,8 @@ def watchdog(trammel):
         time.sleep(0.3)
         bite = re.findall(r"watchdog at clock (\d+): .*motion has ended; counters ([-\d ]+)", b.notes())[-1]
         stood = [int(n) for n in bite[1].split()]
-        process.kill()
-        process.wait()
+        bench.namespaces.end(process)
+        bench.wait_until(lambda: bench.rtapi_app() is None, 5, "the end of the stopped rtapi_app")
         numbers, pins, counters = b.end_server()
     same_places(pins, counters)
     expect(pins == stood, f"at the bite {stood}, at the end {pins}")

@@ -1,4 +1,4 @@
-// A planner module in the test's own memory, a path server behind it, and a card on the model engine in simulated time.
+// A planner module in the test's own memory, its path server, and a card on the model engine in simulated time.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@
 namespace trammel::linuxcnc {
 
 inline constexpr std::uint32_t kPathClock = 200'000;
-inline constexpr double kPathPulses = 80;  // a mm
+inline constexpr double kPathPulses = 80;  // pulses per mm
 
-// What LinuxCNC hands to its planner, as operations.
+// Builds the operations that LinuxCNC hands to its planner.
 class Operations {
  public:
   Operations& line(int motion, const Pose& end, double speed = 0) {
@@ -32,7 +32,7 @@ class Operations {
   Operations& rapid(const Pose& end) { return line(1, end, 150); }
   Operations& feed(const Pose& end, double speed) { return line(2, end, speed); }
   Operations& probe(const Pose& end, double speed) { return line(5, end, speed); }
-  // `normal`: index of the axis that stands on the plane.
+  // `normal`: index of the axis perpendicular to the plane.
   Operations& arc(const Pose& end, const std::array<double, 3>& centre, std::size_t normal, int turns, double speed) {
     trammel_operation& operation = add(TRAMMEL_ARC, 3, end);
     std::copy(centre.begin(), centre.end(), operation.centre);
@@ -82,7 +82,7 @@ class PathBench {
     engine->set_sink(&steps);
   }
 
-  // As the module does in a servo period.
+  // Writes an operation into the ring, as the module does in a servo period.
   void post(const trammel_operation& operation) {
     const std::uint64_t head = region->operation_head;
     if (head - region->operation_tail == TRAMMEL_OPERATIONS) throw std::logic_error("the ring is full");
@@ -96,7 +96,8 @@ class PathBench {
   }
   double seconds() const { return static_cast<double>(engine->cycles()) / kPathClock; }
 
-  // Hands over one operation a period from `begin` on, but none in a stall; ends when all is done and the card stands.
+  // Hands over one operation per period, except while stalled. Ends when all operations are done and the card is at
+  // rest.
   using Period = std::function<void(unsigned)>;
   void run(const std::vector<trammel_operation>& operations, const Period& each = {}) {
     std::size_t given = 0;
@@ -123,7 +124,7 @@ class PathBench {
   test::Steps steps;
   trammel_status status{};
   bool stalled = false;
-  std::uint32_t under_runs = 0;  // holds for want of commands, in the run before
+  std::uint32_t under_runs = 0;  // number of under-run holds when the last run ended
 
  private:
   std::uint64_t beats_ = 0;
@@ -141,7 +142,7 @@ inline std::vector<std::pair<unsigned, int>> path_of(const test::Steps& steps) {
   return path;
 }
 
-// The same program as the runner takes it from its text.
+// The path of the same program, from its text by the runner.
 inline std::vector<std::pair<unsigned, int>> runner_path(const std::string& text, const machine::Machine& machine) {
   const auto engine = sim::make_model_engine(sim::EngineOptions{4, kPathClock, false});
   sim::TimedBus bus(*engine, kPathClock, 1e9);

@@ -1,4 +1,4 @@
-// Operations as G-code: the digits that bring the same double back, and the words of each kind of motion.
+// Operations as G-code: digits that give the same double again, and the words of each kind of motion.
 #include "trammel/linuxcnc/path_line.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ double read_back(const std::string& number) {
   return motion.target[0];
 }
 
-// Every double that a coordinate may be, and the feeds of millimetres beside it.
+// The range covers all doubles that a coordinate may have, and the feeds in millimetres.
 RC_GTEST_PROP(PathLine, TheReaderGetsTheSameDoubleBack, ()) {
   const double mantissa = static_cast<double>(*rc::gen::arbitrary<std::int64_t>());
   const int exponent = *rc::gen::inRange(-120, -44);

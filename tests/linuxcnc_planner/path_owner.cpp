@@ -1,12 +1,11 @@
-// A process that owns a simulated card and serves the planner module alone, at the pace of the wall clock: what the
-// tests in LinuxCNC need of `trammel linuxcnc`. Positions are fed back by LinuxCNC's own loop, from command to
-// feedback.
+// A process that owns a simulated card and serves the planner module only, at the pace of the wall clock. It replaces
+// `trammel linuxcnc` in the tests with LinuxCNC. LinuxCNC's own loop feeds positions back, from command to feedback.
 //
 //     path_owner NAME LOG [SURFACE]
-//     path_owner --run PROGRAM LOG     the same machine makes the program as `trammel run` does: the "path" lines alone
+//     path_owner --run PROGRAM LOG     runs the program on the same machine as `trammel run` does; only "path" lines
 //
-// The probe at input 2 touches where Z is at most SURFACE mm. Ends at SIGTERM and writes to LOG: a line "step AXIS
-// DIRECTION CYCLE" for each pulse, "probe X Y Z" for each probe, "end REFUSALS UNDER_RUNS".
+// The probe at input 2 touches while Z is at most SURFACE mm. The process ends at SIGTERM and writes to LOG: a line
+// "step AXIS DIRECTION CYCLE" for each pulse, "probe X Y Z" for each probe, "end REFUSALS UNDER_RUNS".
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -40,7 +39,7 @@ std::uint64_t wall_nanoseconds() {
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
-// The engine keeps up with the wall clock before each access and behind each sleep; a late process catches up.
+// Before each access and after each sleep the engine catches up with the wall clock.
 class PacedBus final : public driver::Bus {
  public:
   PacedBus(sim::Engine& engine, double surface) : engine_(engine), surface_(surface), begun_(wall_nanoseconds()) {}

@@ -1,4 +1,4 @@
-// Probing segments against the pins of the simulated card.
+// Compares probing segments with the pins of the simulated card.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -33,7 +33,7 @@ TEST_F(PathProbe, TellsTheCardsCapture) {
   EXPECT_EQ(bench.status.pose[2] * kPathPulses, bench.steps.position(2));
 }
 
-// LinuxCNC sees the probe's pin and aborts the motion.
+// LinuxCNC sees the probe's pin and aborts the motion after the edge.
 TEST_F(PathProbe, AnAbortBehindTheEdgeKeepsTheCapture) {
   touch_at(2);
   bool aborted = false;

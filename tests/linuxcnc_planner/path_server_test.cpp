@@ -1,4 +1,4 @@
-// The path server against the runner on the same programs; pauses, aborts, overrides, refusals, coordinates.
+// Compares the path server with the runner on the same programs. Pauses, aborts, overrides, refusals, coordinates.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Lines, arcs in three planes, a helix, whole circles, each kind of path control, as text and as LinuxCNC has it.
+// Lines, arcs in three planes, a helix, full circles and each kind of path control, as text and as LinuxCNC's
+// operations.
 struct BothWays {
   Operations operations;
   std::string text;
@@ -57,7 +58,7 @@ TEST(PathServer, MakesTheStepsOfTheRunner) {
   EXPECT_EQ(bench.status.pose[0], 0);
 }
 
-// Programs of random lines and arcs, of more operations than look-ahead sees.
+// Programs of random lines and arcs, with more operations than the look-ahead holds.
 TEST(PathServer, RandomProgramsMakeTheStepsOfTheRunner) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);
@@ -211,7 +212,7 @@ TEST(PathServer, Inches) {
   EXPECT_EQ(bench.status.pose[1], 2);
 }
 
-// The owner is told to end: the machine was switched off.
+// The owner is told to end because the machine was switched off.
 TEST(PathServer, EndsAtRestWhenItIsToldTo) {
   PathBench bench;
   for (const trammel_operation& operation : long_way().all) bench.post(operation);
@@ -228,7 +229,7 @@ TEST(PathServer, RefusesOtherKinematics) {
   EXPECT_THROW(PathBench{machine}, std::invalid_argument);
 }
 
-// In the clock in which the motion before ends, without a stop; M64 and M65 behind one.
+// Outputs switch in the clock in which the motion before them ends, without a stop. M64 and M65 switch after a stop.
 TEST(PathServer, SwitchesOutputsInTheirPlaces) {
   machine::Machine machine = machine::default_machine();
   machine::apply_override(machine, "outputs.p1=3");

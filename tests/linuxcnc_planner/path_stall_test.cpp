@@ -1,4 +1,4 @@
-// The hand-over of operations stands still, or is slower than the card: which pulse comes when.
+// The hand-over of operations stalls, or is slower than the card. Compares the times of the pulses.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 namespace trammel::linuxcnc {
 namespace {
 
-// From the first one on.
+// Times of the pulses, counted from the first one.
 std::vector<std::uint64_t> pulse_times(const PathBench& bench) {
   std::vector<std::uint64_t> times;
   for (const driver::PinStep& step : bench.steps.pins) times.push_back(step.cycle - bench.steps.pins.front().cycle);
   return times;
 }
 
-// The realtime process is stopped three times for 300 ms: no operation and no beat comes then.
+// The realtime process is stopped three times for 300 ms, in which neither operations nor beats come.
 TEST(PathServer, StallsOfTheRealtimeSideChangeNoPulse) {
   PathBench quiet;
   quiet.run(long_way().all);
@@ -31,7 +31,7 @@ TEST(PathServer, StallsOfTheRealtimeSideChangeNoPulse) {
   EXPECT_TRUE(path_of(stalled.steps) == path_of(quiet.steps)) << "an early one may part the motion, never the path";
 }
 
-// In the middle of the hand-over, while the card has motion for longer than the stall lasts.
+// The stall is in the middle of the hand-over. The card then has enough motion for longer than the stall.
 TEST(PathServer, StallsWhileOperationsComeChangeNoPulse) {
   Operations many;
   for (int n = 0; n < 400; ++n) many.feed({(n % 20) * 0.2, n * 0.01}, 100);
@@ -49,11 +49,11 @@ TEST(PathServer, StallsWhileOperationsComeChangeNoPulse) {
   EXPECT_EQ(quiet.under_runs + stalled.under_runs, 0U);
 }
 
-// One piece of feed spans many of these lines, and comes with a later one.
+// One feed piece spans many of these lines, and arrives with a later one.
 TEST(PathServer, SlowLinesBehindOneAnotherComeToTheirEnd) {
   machine::Machine machine = machine::default_machine();
   machine.motion.window = 40;
-  for (machine::MachineAxis& axis : machine.axes) axis.max_acceleration = 100'000;  // a stop takes no time
+  for (machine::MachineAxis& axis : machine.axes) axis.max_acceleration = 100'000;  // a stop takes almost no time
   Operations many;
   for (int n = 1; n <= 150; ++n) many.feed({n * 0.1}, 5);
   PathBench bench(machine);

@@ -1,4 +1,4 @@
-// The machine files that docs/user/boards.md suggests for each board are read here as they stand there.
+// Reads the parts of machine files that docs/user/boards.md suggests for each board.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -10,7 +10,7 @@
 namespace trammel::machine {
 namespace {
 
-// The page's fences of TOML by the name of their board, which stands in the mark above them.
+// The TOML blocks of the page, by the name of the board in the HTML comment above each block.
 std::map<std::string, std::string> suggested_roles() {
   std::ifstream file(TRAMMEL_EXAMPLES_DIR "/../docs/user/boards.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
@@ -24,7 +24,7 @@ std::map<std::string, std::string> suggested_roles() {
   return found;
 }
 
-// Three axes that may home, so that a role of the page is refused for no other reason.
+// The default machine without E: each of X, Y and Z may home, so only a wrong role of the page can be refused.
 Machine with_roles(const std::string& roles) {
   std::string text = default_machine_text();
   text.resize(text.find("[axis.e]"));

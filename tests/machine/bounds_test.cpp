@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Each number at its bounds and just beyond: refused by name, bounds and unit.
+// Each number is accepted at its bounds. Beyond them it is refused with its name, bounds and unit.
 TEST(MachineBounds, EveryNumberOfAnAxisHasThem) {
   struct Bound {
     const char* entry;

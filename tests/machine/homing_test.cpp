@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// The default machine with lines behind it; the first of them has number kFirstLine.
+// The default machine followed by `more`, whose first line has the number first_homing_line().
 std::string homing_text(const std::string& more) { return default_machine_text() + "\n" + more; }
 int first_homing_line() {
   const std::string text = homing_text("");

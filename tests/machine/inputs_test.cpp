@@ -39,14 +39,14 @@ TEST(Inputs, RolesPolaritiesAndFilters) {
   EXPECT_EQ(role_of(machine, {AxisRole::kHome, 0}).inputs, 8U);
   EXPECT_EQ(role_of(machine, CardRole::kFeedHold).inputs, 1U << 31);
   EXPECT_EQ(machine.inputs.used(), 0x8000002FU);
-  // With a pull-up an open switch reads 1: limits are normally closed, a broken wire is a stop.
+  // With a pull-up an open switch reads 1. Limit switches are normally closed, so that a broken wire stops the machine.
   EXPECT_EQ(machine.inputs.inverted(), 0x80000028U);
   EXPECT_EQ(machine.inputs.filter_of(3), 4.5);
   EXPECT_EQ(machine.inputs.filter_of(0), 2);
   Machine other = machine;
   apply_override(other, "inputs.closed_level=1");
   EXPECT_EQ(other.inputs.inverted(), 0x00000007U);
-  // A role of its own says what a limit beside it leaves open.
+  // y_home shares input 1 with a limit and declares it normally open; that polarity then applies to the input.
   apply_override(other, "inputs.y_home={input=1, normally=\"open\"}");
   EXPECT_EQ(other.inputs.inverted(), 0x00000005U);
 }
@@ -82,7 +82,8 @@ TEST(Inputs, SoftLimitsStopOnARampUnlessToldOtherwise) {
   EXPECT_EQ(other.inputs.on_soft_limit, OnInput::kRamp);
 }
 
-// X: 150 mm/s, 2 s of hold to half acceleration: T = 0.3 s, and 1 ms and 64 clocks of filter.
+// X at 150 mm/s. A hold uses half of the acceleration and takes T = 0.3 s. The filter takes 1 ms, and the scan of the
+// inputs 64 clocks.
 TEST(Inputs, ARampNeedsTheOvertravelThatItTakes) {
   EXPECT_EQ(hold_seconds(default_machine()), 0.3);
   const double way = 150 * (0.001 + 64e-8 + 0.15);

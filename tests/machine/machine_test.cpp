@@ -142,7 +142,7 @@ bool is_one_line(const std::string& message) {
   return !message.empty() && message.size() <= 1000 && std::none_of(message.begin(), message.end(), control);
 }
 
-// Files that are nearly right: read, or refused with one line.
+// Files with a few random changes are read, or refused with one line.
 RC_GTEST_PROP(Machine, AnyTextIsReadOrRefused, ()) {
   std::string text = defaults();
   const auto changes = *rc::gen::inRange(1, 6);
@@ -195,7 +195,7 @@ std::string repeated(const std::string& text, int count) {
   return result;
 }
 
-// toml11 calls itself for every bracket and every table of a dotted key.
+// toml11 recurses for every bracket and for every table of a dotted key, so deep nesting would exhaust the stack.
 TEST(Machine, RefusesDeepNesting) {
   for (const int depth : {17, 5000, 300000}) {
     EXPECT_EQ(error_of("\na = " + repeated("[", depth)), "m.toml:2: nested deeper than 16");
@@ -215,7 +215,7 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
               "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, spindle, tools, probe, "
               "inputs, homing")
         << quote;
-    // A string of one line that is not closed hides nothing behind it.
+    // An unclosed one-line string ends with its line, so brackets in the next line count.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
     EXPECT_EQ(found, quote.size() == 1) << quote;
   }

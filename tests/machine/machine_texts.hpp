@@ -1,4 +1,4 @@
-// Texts of machine files, and what is said of them.
+// Texts of machine files, and the errors that they cause.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A machine file with one steps_per_mm changed: nothing else may differ, whatever form of TOML the file has.
+// Changes one steps_per_mm in a machine file. Nothing else may change, in any form of TOML.
 #include "trammel/machine/scale.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ const std::string kRest =
     "1000\n"
     "direction_hold_ns = 1000\ninverted = false\n";
 
-// The text with `mark` put in the place of the number, by hand.
+// `before` has `mark` at the place of the number. Only the number may change, from 80 to `number`.
 void expect_only_number(const std::string& before, const std::string& mark, const std::string& number) {
   const std::string text = replaced(before, mark, "80");
   EXPECT_EQ(with_steps_per_mm(text, "m.toml", 'X', number).text, replaced(before, mark, number)) << before;
@@ -33,7 +33,7 @@ TEST(Scale, ReplacesTheNumberAlone) {
   const std::string card = "[card]\nclock_hz = 64e6\n";
   expect_only_number(card + "[axis.x]\nsteps_per_mm = @  # of the belt: 80\n" + kRest, "@", "80.64516");
   expect_only_number("# 80\n\n" + card + "[axis.x]\nsteps_per_mm=@#80\n" + kRest, "@", "40");
-  // Indented, behind others of the same value, in a file without an end of its last line.
+  // Indented, after other axes with the same value, in a file without a newline at its end.
   expect_only_number(card + "[axis.y]\nsteps_per_mm = 80\n" + kRest + "[axis.x]\n" + kRest + "\t steps_per_mm  =  @",
                      "@", "1");
 }
@@ -71,7 +71,7 @@ RC_GTEST_PROP(Scale, EachAxisOfTheExampleAlone, ()) {
   const Machine machine = parse_machine(changed.text, "m.toml");
   for (const MachineAxis& axis : machine.axes)
     RC_ASSERT(axis.steps_per_mm == (axis.letter == letter ? std::stod(number) : 80));
-  // What follows the number is what followed it before, and so is what comes before it.
+  // The text before the number and the text after it are unchanged.
   const std::size_t at =
       before.find("steps_per_mm", before.find(std::string("\n[axis.") + static_cast<char>(letter - 'A' + 'a'))) + 15;
   RC_ASSERT(changed.text == before.substr(0, at) + number + before.substr(at + 2));

@@ -1,4 +1,4 @@
-// The sections of a machine file beside its axes: outputs, tools, probe; homes and coordinate systems.
+// Sections of a machine file other than the axes: outputs, tools, probe; also homes and coordinate systems.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ TEST(MachineFile, OutputsThatTheCardSwitches) {
 }
 
 std::string with_outputs(const std::string& entries) { return defaults() + "\n[outputs]\n" + entries; }
-// Of the n-th entry.
+// Beginning of the message about the n-th entry of [outputs].
 std::string line_of_output(int n) {
   return "m.toml:" + std::to_string(std::count(defaults().begin(), defaults().end(), '\n') + 2 + n) + ": outputs.";
 }

@@ -1,5 +1,5 @@
-// The comparison over the real methods: the table of the second paper's lines, what every method must keep, and random
-// lines.
+// The comparison of the real methods: the table for the lines of the second paper, properties that every method must
+// have, and random lines.
 #include "trammel/measure/comparison.hpp"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ TEST(Comparison, OperationsOfFigure5) {
   const Line line = interpolation::kPaperLines[0].line();
   EXPECT_EQ(measures_of(Method::kPointByPoint, line).cost.operations, 60U);
   EXPECT_EQ(measures_of(Method::kOneShot, line).cost.operations, 1U);
-  // 19 words from FREQUENCY_LO[3] to START: 4 axes of 4, LENGTH and START.
+  // 19 words from FREQUENCY_LO[3] to START: 4 words for each of 4 axes, LENGTH and START.
   EXPECT_EQ(measures_of(Method::kOneShot, line).cost.register_writes, 19U);
   // 64 iterations: the smallest power of two above 40.
   EXPECT_EQ(measures_of(Method::kDda, line).cost.operations, 64U);
@@ -48,13 +48,13 @@ TEST(Comparison, OperationsOfFigure5) {
 
 TEST(Comparison, WhatTheCardRunsCostsItsBlock) {
   const Curve circle = make_circle(25);
-  // 38 and 33 halfwords, as docs/reference/commands.md has them.
+  // 38 and 33 halfwords, according to docs/reference/commands.md.
   EXPECT_EQ(measures_of(Method::kSteer, circle).cost.operations, 1U);
   EXPECT_EQ(measures_of(Method::kRotation, circle).cost.operations, 1U);
   EXPECT_EQ(measures_of(Method::kMinDeviation8, circle).cost.operations, 1U);
   EXPECT_EQ(measures_of(Method::kSteer, circle).cost.register_writes, 19U);
   EXPECT_EQ(measures_of(Method::kRotation, circle).cost.register_writes, 17U);
-  // The same rule walks lines on the host, and a DDA circles.
+  // On the host the same rule walks lines, and a DDA walks circles.
   EXPECT_EQ(measures_of(Method::kSteer, make_line({0, 0}, {20, 40})).cost.operations, 60U);
   EXPECT_GT(measures_of(Method::kDda, circle).cost.operations, 200U);
 }
@@ -77,7 +77,8 @@ TEST(Comparison, EveryMethodThatCanDoACurveEndsOnIt) {
       EXPECT_NEAR(static_cast<double>(position[0]), end[0], 1e-9) << interpolation::info(method).name;
       EXPECT_NEAR(static_cast<double>(position[1]), end[1], 1e-9) << interpolation::info(method).name;
       const MethodMeasures measures = measure_method(method, trace, ideal_of(curves[i]));
-      // A differential analyser integrates forwards: on a circle it runs out by some pulses a turn. Dividers stray.
+      // A differential analyser integrates forwards: on a circle it drifts outwards by some pulses per turn. Dividers
+      // deviate too.
       const bool analyser = i > 0 && (method == Method::kDda || method == Method::kDdaHalf);
       const bool strays = analyser || method == Method::kDivider;
       EXPECT_LT(measures.distances.perpendicular.largest, strays ? 6 : 1.01) << interpolation::info(method).name;
@@ -88,14 +89,14 @@ TEST(Comparison, EveryMethodThatCanDoACurveEndsOnIt) {
 TEST(Comparison, OneShotIsEvenToAClockAndSteerIsNot) {
   const Line line = make_line({0, 0}, {53, 31});
   const MethodMeasures one_shot = measures_of(Method::kOneShot, line);
-  // An interval is a whole number of clocks, off its mean by less than one: p / L of it.
+  // An interval is a whole number of clocks and differs from its mean by less than one clock, which is p / L of it.
   EXPECT_LT(one_shot.evenness[0].largest, 53.0 / 2000);
   EXPECT_LT(one_shot.evenness[1].largest, 31.0 / 2000);
   EXPECT_LT(one_shot.ripple.largest, 0.05);
-  // On each axis within half a pulse of the running point at every clock: the theorem of the card's pulse generator.
+  // On each axis within half a pulse of the running point in every clock: the theorem of the card's pulse generator.
   EXPECT_LE(one_shot.distances.axis[0].largest, 0.5);
   EXPECT_LE(one_shot.distances.axis[1].largest, 0.5);
-  // Each x step of STEER takes one step or two where 84/53 would be even.
+  // The x intervals of STEER are one or two steps; an even interval would be 84/53.
   const MethodMeasures steer = measures_of(Method::kSteer, line);
   EXPECT_NEAR(steer.evenness[0].largest, 1 - 53.0 / 84, 1e-9);
   EXPECT_GT(highest_line(steer.spectrum[0]).amplitude, 0.1);
@@ -191,7 +192,7 @@ TEST(RandomLinesTest, CoverAllDirectionsWithinTheLargest) {
 
 TEST(RandomLinesTest, RefuseALineFasterThanTheClock) {
   RandomLines lines = some_lines(10);
-  lines.largest = 2001;  // 2,000 clocks a line
+  lines.largest = 2001;  // 2,000 clocks per line
   EXPECT_THROW(measure_random_lines(lines), std::invalid_argument);
 }
 

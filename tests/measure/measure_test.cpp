@@ -1,4 +1,4 @@
-// The measures against traces whose answers are known by hand or in closed form.
+// The measures against traces with results that are known by hand or in closed form.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ Trace trace_of(std::size_t axes, std::uint64_t total, const std::vector<Pulse>& 
   return trace;
 }
 
-// (0,0) to (2,1): y at 1, then x at 2 and 3, in 3 units.
+// (0,0) to (2,1): y at 1, then x at 2 and 3, in 3 time units.
 Trace small_line() { return trace_of(2, 3, {{1, {0, 1}}, {2, {1, 0}}, {3, {1, 0}}}); }
 
 TEST(Trace, KnowsTheTimesOfEachAxis) {
@@ -47,14 +47,14 @@ TEST(Distance, OfALineByHand) {
   ASSERT_TRUE(distances.horizontal.has_value());
   EXPECT_NEAR(distances.horizontal->largest, 2, 1e-12);
   EXPECT_NEAR(distances.horizontal->mean, 1, 1e-12);
-  // x stands at 0 after one of three units, where the running point is at 2/3; y is at 1 where that is at 1/3.
+  // After one of three units x is at 0 and the running point at 2/3; y is at 1 and the running point at 1/3.
   EXPECT_NEAR(distances.axis[0].largest, 2.0 / 3, 1e-12);
   EXPECT_NEAR(distances.axis[1].largest, 2.0 / 3, 1e-12);
   EXPECT_NEAR(distances.axis[0].mean, (2.0 / 3 + 1.0 / 3 + 0) / 3, 1e-12);
 }
 
 TEST(Distance, TwoAxesAgreeWithTheGeneralFormula) {
-  // The same line with a third axis that stands still takes the general path.
+  // The same line with a third axis at rest uses the general code.
   const Distances plane = measure_distances(small_line(), IdealCurve::line(2, {}, {2, 1}));
   Trace trace = trace_of(3, 3, {{1, {0, 1}}, {2, {1, 0}}, {3, {1, 0}}});
   const Distances space = measure_distances(trace, IdealCurve::line(3, {}, {2, 1, 0}));
@@ -88,7 +88,7 @@ TEST(Distance, ToAnEllipse) {
   EXPECT_NEAR(distance_to_ellipse(7, 0, 5, 2), 2, 1e-9);
   EXPECT_NEAR(distance_to_ellipse(0, -5, 5, 2), 3, 1e-9);
   EXPECT_NEAR(distance_to_ellipse(3, 4, 5, 5), 0, 1e-9);
-  // Against the least of many points, all around and inside, both orientations.
+  // Against the minimum over many points, for positions all around and inside, in both orientations.
   for (int i = 0; i < 400; ++i) {
     const double x = -7 + 0.7 * (i % 20);
     const double y = -6 + 0.6 * (i / 20);
@@ -152,7 +152,7 @@ TEST(Evenness, OfALineByHand) {
 }
 
 TEST(Evenness, APerfectCircleHasNone) {
-  // Pulses exactly where the running point passes half pulses: as even as pulses can be, on both axes.
+  // Pulses exactly where the running point passes half pulses: this is the most even sequence on both axes.
   constexpr double kRadius = 20;
   constexpr std::uint64_t kTotal = 1'000'000'000;
   std::vector<Pulse> pulses;
@@ -172,12 +172,12 @@ TEST(Evenness, APerfectCircleHasNone) {
   const IdealCurve curve = IdealCurve::round(shape);
   for (std::size_t a = 0; a < 2; ++a) {
     const Evenness evenness = measure_evenness(trace, curve, a);
-    // 80 pulses; x turns round once on the way, y twice.
+    // 80 pulses; x reverses once, y twice.
     EXPECT_EQ(evenness.intervals, a == 0 ? 78U : 77U);
     EXPECT_LT(evenness.largest, 3e-3);
   }
   EXPECT_LE(measure_distances(trace, curve).axis[0].largest, 0.5 + 2e-3);
-  // Chords of half pulses around the turning points are all that is left.
+  // Only the chords of half pulses around the turning points remain.
   EXPECT_LT(measure_speed_ripple(trace, curve).rms, 0.1);
 }
 
@@ -206,7 +206,7 @@ TEST(SpeedRipple, OfEvenPulsesIsZeroAndOfAlternatingOnesByHand) {
 }
 
 TEST(SpeedRipple, LinesAgreeWithTheGeneralFormula) {
-  // A large circle's first pulses run almost along y; so does the line.
+  // The first pulses of a large circle run almost along y, and so does the line.
   const std::vector<Pulse> pulses = {{5, {0, 1}}, {15, {0, 1}}, {19, {0, 1}}, {35, {0, 1}}};
   RoundShape shape;
   shape.a = shape.b = 1e7;
@@ -219,7 +219,7 @@ TEST(SpeedRipple, LinesAgreeWithTheGeneralFormula) {
 }
 
 TEST(SpeedRipple, IsTheComponentAlongThePath) {
-  // Both axes perfectly even, but out of step with each other: the speed along the path is constant.
+  // Both axes are perfectly even but not in phase: the speed along the path is constant.
   const IdealCurve curve = IdealCurve::line(2, {}, {4, -4});
   std::vector<Pulse> pulses;
   for (std::uint64_t i = 0; i < 4; ++i) {

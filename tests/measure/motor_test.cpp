@@ -1,4 +1,4 @@
-// The motor against what its equations say, and the integration against a finer one.
+// The motor against its equations, and the integration against a finer one.
 #include "trammel/measure/motor.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@
 namespace trammel::measure {
 namespace {
 
-// `pulses` of one axis, all even, or every second one late by `delay` of the interval.
+// `pulses` of one axis, with even intervals or with every second pulse late by `delay` of the interval.
 Trace pulses_along_x(std::uint64_t pulses, double delay = 0) {
   constexpr std::uint64_t kInterval = 1000;
   Trace trace;
@@ -30,8 +30,8 @@ MotorRun run_at(double speed) {
 }
 
 TEST(Motor, FollowsEvenPulsesAndLagsByTheLoad) {
-  // At high speed the steps average out: friction + damping against K-field torque gives the mean lag; the largest
-  // cannot be below it, and the motor keeps up.
+  // At high speed the steps average out: friction and damping against the torque of the field give the mean lag. The
+  // largest lag cannot be below it, and the motor keeps up.
   const Vibration vibration = simulate_motors(pulses_along_x(100), line_along_x(100), run_at(800));
   EXPECT_FALSE(vibration.lost_steps);
   EXPECT_GT(vibration.largest_lag, 0.1);
@@ -78,7 +78,7 @@ TEST(Motor, LosesStepsBeyondItsTorque) {
 }
 
 TEST(Motor, ConstantVelocityFromAStandstillIsHarder) {
-  // The second paper starts at full speed. There are speeds that the motor can run at but not start at.
+  // The second paper starts at full speed. At some speeds the motor can run but not start.
   MotorRun run = run_at(1800);
   EXPECT_FALSE(simulate_motors(pulses_along_x(400), line_along_x(400), run).lost_steps);
   run.ramp_time = 0;

@@ -1,5 +1,5 @@
-// The arc generator's golden model against the circle itself: ends, distances, speed, symmetry; and its clocks against
-// the rule of the increments.
+// The golden model of the arc generator is compared with the circle itself (ends, distances, speed, symmetry); the
+// clocked block is compared with the rule for the increments.
 #include "trammel/model/arc_generator.hpp"
 
 #include <gtest/gtest.h>
@@ -13,12 +13,12 @@
 namespace trammel::model {
 namespace {
 
-// How far a path goes beyond the radii of its start and end, pulses; -1 where it misses its end.
+// How far the path leaves the ring between the radii of its start and its end, in pulses; -1 when it misses its end.
 long double outside(const ArcPoints& arc, const ChordFields& fields) {
   const Radii radii = arc.radii();
   const long double low = std::min(radii.start, radii.end);
   const long double high = std::max(radii.start, radii.end);
-  // In 1/256 pulses, squared: 64 bits hold it up to radii of 2^22.
+  // Squares in (1/256 pulse)^2; 64 bits hold them up to radii of 2^22.
   const auto low_square = static_cast<std::int64_t>(low * low * 65536);
   const auto high_square = static_cast<std::int64_t>(high * high * 65536);
   long double worst = 0;
@@ -46,7 +46,7 @@ class RandomArcs {
  public:
   explicit RandomArcs(std::uint64_t seed) : random_(seed) {}
 
-  // A radius from 1 to 10^6, the sweep up to a turn and now and then several; mostly at most `longest` pulses long.
+  // Radius from 1 to 10^6, sweep up to one turn, sometimes several turns; most arcs are at most `longest` pulses long.
   ArcPoints next(long double longest) {
     ArcPoints arc;
     do {
@@ -68,8 +68,7 @@ class RandomArcs {
         arc.start[i] = std::llround(centre + radius * part(start));
         arc.end[i] = std::llround(centre + end_radius * part(end));
       }
-      // Rounded ends of the smallest circles may lie nearly on the centre, which no arc does; whole turns are asked
-      // for.
+      // On the smallest circles a rounded end may lie almost at the centre, where no arc can end; draw again.
     } while (arc.radii().start < 0.5L || arc.radii().end < 0.5L);
     return arc;
   }
@@ -94,10 +93,10 @@ TEST(ArcGenerator, RandomArcsEndWhereTheyShould) {
     worst = std::max(worst, distance);
   }
   RecordProperty("outside", std::to_string(worst));
-  EXPECT_GT(worst, 0.5L);  // the judge sees something
+  EXPECT_GT(worst, 0.5L);  // the test can see a deviation
 }
 
-// Any plane, up to six axes beside it, each of which makes its pulses on the line's closed form.
+// Any plane and up to six further axes. Each further axis must make the pulses of the line's closed form.
 TEST(ArcGenerator, RandomHelicesEndWhereTheyShould) {
   RandomArcs random(20261123);
   std::mt19937_64 any(5);
@@ -131,7 +130,7 @@ TEST(ArcGenerator, RandomHelicesEndWhereTheyShould) {
   EXPECT_GT(moved, 30'000U);
 }
 
-// The judge fails where the phase is not preset, and where the closing increment is left out.
+// Without the closing increment some arcs must miss their end; otherwise the comparison could not fail.
 TEST(ArcGenerator, WithoutClosingAnEndIsMissed) {
   RandomArcs random(7);
   int missed = 0;
@@ -149,7 +148,7 @@ TEST(ArcGenerator, WithoutClosingAnEndIsMissed) {
   EXPECT_GT(missed, 10);
 }
 
-// Circles and quarters whose ends lie exactly on the axes, from radius 1 on.
+// Circles and quarters with both ends exactly on the axes, from radius 1 on.
 TEST(ArcGenerator, StartsOnTheAxes) {
   const std::int64_t dirs[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   for (std::int64_t radius = 1; radius <= 300; ++radius) {
@@ -172,7 +171,7 @@ TEST(ArcGenerator, StartsOnTheAxes) {
   }
 }
 
-// The mean speed over each whole chord, against the planned one: the arc's length over its ticks.
+// The mean speed over each whole chord against the planned one, which is the length of the arc per tick.
 TEST(ArcGenerator, SpeedOfEachChord) {
   long double worst = 0;
   for (const std::int64_t radius : {17, 18, 31, 50, 63, 64, 65, 100, 500, 1000, 1023, 4000, 100'000, 1'000'000}) {
@@ -182,7 +181,7 @@ TEST(ArcGenerator, SpeedOfEachChord) {
     const ChordFields fields = prepare_chords(arc);
     const long double planned = kTurn * static_cast<long double>(radius) / static_cast<long double>(fields.path_ticks);
     ChordPath path(fields);
-    // Halves in turns: both have the same x, the chord's two halves of y are those of two increments.
+    // Each pass takes both halves of a chord. X has one increment in both halves, Y has one for each half.
     while (path.left() >= std::uint64_t{2} << fields.state.m) {
       std::array<long double, 2> sum{};
       for (int half = 0; half < 2; ++half) {
@@ -196,7 +195,7 @@ TEST(ArcGenerator, SpeedOfEachChord) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-// A radius of nearly 2^31 pulses: a short arc of it ends where it should, and no coordinate wraps.
+// A radius of nearly 2^31 pulses: a short arc ends at its commanded end, and no coordinate wraps.
 TEST(ArcGenerator, LargestRadius) {
   for (const std::int64_t radius : {std::int64_t{1} << 28, (std::int64_t{1} << 31) - 100}) {
     for (const bool clockwise : {false, true}) {
@@ -215,7 +214,7 @@ TEST(ArcGenerator, LargestRadius) {
   }
 }
 
-// The block and two pulse generators, clock by clock: positions at the end of an arc are those of the rule.
+// The block and two pulse generators, clock by clock. At the end of an arc the positions must be those of ChordPath.
 class Rig {
  public:
   void load(const ChordFields& fields) {
@@ -228,7 +227,7 @@ class Rig {
     send(load_target::kChordClosing, static_cast<std::uint64_t>(fields.state.closing_y), 3);
   }
 
-  // Clocks from the start to ready.
+  // Starts the arc; returns the clocks until the generator is ready.
   unsigned start() {
     in_.start = true;
     clock(false);

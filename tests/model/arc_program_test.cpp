@@ -1,5 +1,5 @@
-// Whole programs with arcs in chords on the card's model: each arc and helix ends on its commanded end, whatever runs
-// before and after it, at any tick rate and in any plane.
+// Whole programs with arcs in chords on the model of the card: each arc and helix ends at its commanded end, with any
+// paths before and after it, at any tick rate and in any plane.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,15 +28,16 @@ class ArcProgram {
     }
   }
 
-  // A few paths, the feed pieces that cover them, and the end; the positions are then where they should be.
+  // Sends a few paths, the feed pieces that cover them, and the end; then compares the positions with the commanded
+  // ones.
   void run() {
     std::uint64_t ticks = 0;
     for (auto paths = any(1, 4); paths != 0; --paths) {
       const auto kind = any(0, 5);
       ticks += kind == 0 ? line() : kind == 1 ? circle() : arc();
     }
-    if (ticks == 0) return;  // of an arc alone that is none
-    // At most a tick a clock; the densest arcs make a step in 16 ticks.
+    if (ticks == 0) return;  // the only path was an arc with an end too close to its centre
+    // At most one tick per clock; the densest arcs make a step every 16 ticks.
     const double pace = any(0, 1) == 0 ? 1.0 : static_cast<double>(any(1000, 5000)) / 1000;
     const std::uint64_t rate = pace > 1 ? static_cast<std::uint64_t>(0x1p64 / pace) : ~std::uint64_t{0};
     ASSERT_TRUE(bench_.feed(ticks, rate)) << "refusal " << bench_.read(reg::kRefusal) << ", fault "
@@ -71,13 +72,13 @@ class ArcProgram {
     return static_cast<std::uint64_t>(ticks);
   }
 
-  // Pulses over ticks.
+  // Increment of `pulses` in `ticks`; also adds the pulses to the expected position.
   std::int64_t increment(unsigned axis, std::int64_t pulses, std::int64_t ticks) {
     position_[axis] += static_cast<std::int32_t>(pulses);
     return std::llround(std::ldexp(static_cast<long double>(pulses) / static_cast<long double>(ticks), 40));
   }
 
-  // On the accumulator, back to where it began.
+  // A full circle on the accumulator.
   std::uint64_t circle() {
     const std::int64_t radius = any(1, 6);
     const auto ticks = static_cast<std::uint64_t>(8 * radius * any(10, 30));
@@ -107,7 +108,7 @@ class ArcProgram {
   std::uint64_t send(ArcPoints arc) {
     arc.axis_x = static_cast<std::uint8_t>(any(0, kAxes - 1));
     arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + any(1, kAxes - 1)) % kAxes);
-    // A sixteenth of a pulse a path tick at most.
+    // At most 1/16 pulse per path tick.
     const std::int64_t most = static_cast<std::int64_t>(prepare_command(arc).path_ticks) / 16;
     std::array<std::int64_t, card_map::kMaxAxes> further{};
     for (unsigned n = 0; n < kAxes; ++n) {
@@ -135,7 +136,7 @@ class ArcProgram {
 
 TEST(ArcProgram, EveryArcAndHelixEndsWhereItShould) {
   ArcProgram program(20261122);
-  // 10,000 helices and more.
+  // The long run makes more than 10,000 helices.
   const int programs = std::getenv("TRAMMEL_LONG") != nullptr ? 15'000 : 300;
   for (int i = 0; i < programs && !HasFatalFailure(); ++i) {
     SCOPED_TRACE(i);

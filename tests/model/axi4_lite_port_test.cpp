@@ -1,4 +1,4 @@
-// The AXI4-Lite port's model by the clocks of architecture.md, with a master that may wait anywhere.
+// The model of the AXI4-Lite port against the clocks in architecture.md, with a master that may wait at any point.
 #include "trammel/model/axi4_lite_port.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(Axi4LitePort, AWriteNeedsAddressAndData) {
   EXPECT_EQ(port.outputs().bresp, Axi4LitePort::kSlaveError) << "holds";
 }
 
-// An answer that the master does not take yet keeps the next access of its kind out, and that kind alone.
+// While the master does not accept an answer, the next access of the same kind waits; the other kind goes on.
 TEST(Axi4LitePort, AnswersThatWaitHoldTheirKindBack) {
   for (const bool write : {false, true}) {
     Axi4LitePort port;
@@ -74,7 +74,8 @@ TEST(Axi4LitePort, AnswersThatWaitHoldTheirKindBack) {
   }
 }
 
-// Both come in one clock, long after the last access: the kind that was not served last goes first.
+// A read and a write arrive in the same clock, long after the last access: the kind that was not served last goes
+// first.
 TEST(Axi4LitePort, OfTwoInOneClockTheOtherKindGoesFirst) {
   for (const bool write_before : {false, true}) {
     Axi4LitePort port;
@@ -95,7 +96,7 @@ TEST(Axi4LitePort, OfTwoInOneClockTheOtherKindGoesFirst) {
   }
 }
 
-// Reads and writes that wait together take turns, one access at a time; every one is answered once, with its own data.
+// Waiting reads and writes take turns, one access at a time. Each is answered once, with its own data.
 TEST(Axi4LitePort, ReadsAndWritesTakeTurns) {
   std::mt19937_64 random(3);
   Axi4LitePort port;
@@ -105,7 +106,7 @@ TEST(Axi4LitePort, ReadsAndWritesTakeTurns) {
   bool under_way = false;
   bool last_write = false;
   for (int clock = 0; clock < 20000; ++clock) {
-    // Both always wait, and answers are taken at once: strictly in turn.
+    // A read and a write are always waiting and answers are accepted at once, so the two must alternate.
     in.awvalid = in.wvalid = in.arvalid = in.bready = in.rready = true;
     in.wstrb = Axi4LitePort::kAllStrobes;
     in.awaddr = 0x200;

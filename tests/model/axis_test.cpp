@@ -1,4 +1,4 @@
-// The axis's golden model: both sources of steps end in the position, and the path's step list is the generator's.
+// The golden model of the axis: both sources of steps move the position; the path's step list follows the generator.
 #include "trammel/model/axis.hpp"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ TEST(Axis, StepEveryClockIsAFault) {
   EXPECT_FALSE(axis.outputs().shaper.fault) << "an event";
 }
 
-// The pins stand at the strap's level from the first clock, and turn when MODE says so.
+// The pins have the level of the strap from the first clock on, and invert when MODE says so.
 TEST(Axis, IdleLevels) {
   for (unsigned level = 0; level < 4; ++level) {
     Axis axis(kAxis, level);
@@ -107,7 +107,7 @@ TEST(Axis, IdleLevels) {
   }
 }
 
-// Neither another axis's settings nor its increments.
+// The axis ignores the settings and the increments of other axes.
 TEST(Axis, OnlyItsOwn) {
   Axis axis = make();
   for (unsigned other = 0; other < 8; ++other) {
@@ -124,7 +124,7 @@ TEST(Axis, OnlyItsOwn) {
   axis.clock(in);
   in.swap = false;
   in.tick = true;
-  axis.clock(in);  // one half and one half: a step
+  axis.clock(in);  // preset of 1/2 plus 1/2: a step
   in.tick = false;
   unsigned high = 0;
   for (int i = 0; i < 30; ++i) {

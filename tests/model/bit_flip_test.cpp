@@ -1,6 +1,6 @@
-// What a bit that falls over in the memory of a queue does: each bit of a program that waits in the card, one at a
-// time. The card has no parity. The test shows which flips it notices by itself, which the host sees by the end
-// position, and lists by field those that nobody sees (docs/developer/evidence.md has the table).
+// Effects of a flipped bit in the memory of a queue: each bit of a waiting program is flipped, one at a time. The card
+// has no parity. The test shows which flips the card notices itself, which flips the host sees from the end position,
+// and lists by field those that nobody sees (docs/developer/evidence.md has the table).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,12 +23,12 @@ namespace field = card_map::field;
 enum class Seen { ByTheCard, ByTheEnd, PathDiffers, TimeDiffers, Harmless };
 constexpr std::array kSeen = {Seen::ByTheCard, Seen::ByTheEnd, Seen::PathDiffers, Seen::TimeDiffers, Seen::Harmless};
 
-// Fields in which a flip may change the path unseen.
+// Fields in which a flip can change the path while neither the card nor the host notices.
 const std::set<std::string> kSilent{"ARC deviation", "ARC gradient_x",    "ARC half_x",     "ARC half_y", "ARC plane",
                                     "ARC quadrants", "FEED opcode, mask", "LINE increment", "OUTPUT set"};
 
 constexpr unsigned kFlipAxes = 2;
-constexpr std::uint64_t kFlipLimit = 15'000;  // clocks; the program takes some 5,000
+constexpr std::uint64_t kFlipLimit = 15'000;  // clocks; the program takes about 5,000
 
 model::CardConfig flip_config() {
   model::CardConfig config;
@@ -37,7 +37,7 @@ model::CardConfig flip_config() {
   return config;
 }
 
-// What a run has shown.
+// Observed results of a run.
 struct Shown {
   std::vector<std::tuple<std::uint64_t, std::uint64_t, unsigned, int>> path;  // command, tick, axis, direction
   std::vector<StepRecorder::Pin> pins;
@@ -48,7 +48,7 @@ struct Shown {
   bool rested = false;
 };
 
-// The program, whole in the queues while the card is held; then one run of a copy.
+// The program is complete in the queues while the card is held; each run uses a copy of this card.
 class Flips {
  public:
   struct Place {
@@ -109,7 +109,7 @@ class Flips {
     for (int clocks = 0; !core.answer().ack && clocks < 2000; ++clocks) skip::clock(core, {});
   }
 
-  // Names the halfwords that the command has in its queue.
+  // Names the halfwords that the command occupies in its queue.
   void named(bool geometry, const char* command, const std::vector<std::string>& names) {
     const auto& queue = geometry ? bench_.core.state().geometry_queue.state() : bench_.core.state().feed_queue.state();
     std::size_t& at = geometry ? geometry_at_ : feed_at_;
@@ -118,7 +118,7 @@ class Flips {
     for (std::size_t n = 0; at != end; ++n, ++at)
       places_.push_back({geometry, at, std::string(command) + " " + (n < names.size() ? names[n] : names.back())});
   }
-  // Of a command's halfwords in a queue: all but the second one, which the checker uses up.
+  // Names of the halfwords of a command in a queue: all but the second one, which the checker consumes.
   static std::vector<std::string> names_of(card_map::Opcode opcode, std::uint8_t mask) {
     const card_map::Command& layout = *card_map::find_command(static_cast<std::uint8_t>(opcode));
     std::vector<std::string> names{"opcode, mask", "words, number", "count", "count", "count"};
@@ -138,7 +138,7 @@ class Flips {
     ASSERT_TRUE(bench_.feed(ticks, std::uint64_t{1} << 63));  // a tick in two clocks
     named(false, "FEED", names_of(card_map::Opcode::Feed, 0));
   }
-  // A path that leaves the queue before the program is whole, since the card works ahead.
+  // A path that leaves the queue before the program is complete, because the card fetches ahead.
   void fetched() {
     ASSERT_TRUE(bench_.line(50, {kOnePulse / 10, 0}));
     ASSERT_TRUE(bench_.feed(50, std::uint64_t{1} << 63));

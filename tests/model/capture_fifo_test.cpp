@@ -1,5 +1,5 @@
-// A judge of the queue of captures that knows only the pins: each edge of a watched input is in the queue, with its
-// level, its time and the positions of then, in the order of the filters; or the card says that it was lost.
+// Judges the queue of captures from the pins alone. Each edge of a watched input must be in the queue with its level,
+// its time and the positions at that time, in the order of the filters; otherwise the card must report it as lost.
 #include "trammel/model/capture_fifo.hpp"
 
 #include <gtest/gtest.h>
@@ -17,19 +17,19 @@ namespace {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr unsigned kWatched = 4;  // units, unit k at input k; the inputs 2 and 3 have filters
+constexpr unsigned kWatched = 4;  // units; unit k watches input k; inputs 2 and 3 have filters
 constexpr std::uint64_t kClocksOfScan = 64;
-constexpr std::uint64_t kFromPin = 2;           // clocks from the one that first samples the edge to its snapshot's
-constexpr std::uint64_t kLongestWait = 6 * 20;  // clocks: the other units' snapshots, the host's and its next one
+constexpr std::uint64_t kFromPin = 2;           // clocks from the first sample of the edge to the time of its snapshot
+constexpr std::uint64_t kLongestWait = 6 * 20;  // clocks: the snapshots of the other units, and two of the host
 
 struct EdgeAtPin {
-  std::uint64_t clock = 0;  // that first samples it
+  std::uint64_t clock = 0;  // the first clock that samples it
   bool active = false;
 };
 
 class QueueJudge : public CoreBench {
  public:
-  // `fast`: edges of inputs without a filter come as close as a clock.
+  // `fast`: edges of inputs without a filter may be one clock apart.
   QueueJudge(bool fast, std::uint64_t seed) : CoreBench(config()), fast_(fast), random_(seed) {
     skips = false;
     idle(700);
@@ -48,7 +48,7 @@ class QueueJudge : public CoreBench {
     };
   }
 
-  // `pause`: clocks between two looks at the queue, at most.
+  // Looks at the queue at least once in `pause` clocks.
   void run(std::uint64_t clocks, std::uint64_t pause) {
     for (const std::uint64_t end = core.cycles() + clocks; core.cycles() < end;) {
       if ((core.outputs().status & field::kStatusBusy) == 0) {
@@ -81,7 +81,7 @@ class QueueJudge : public CoreBench {
       if (stands_ || left_[k]-- != 0) continue;
       pins ^= 1U << k;
       edges_[k].push_back({core.cycles() + 1, (pins >> k & 1) != 0});
-      // No edge without a filter comes while the one before is on its way, but for the fast ones.
+      // Inputs without a filter have no edge while the previous one is still being captured, unless `fast_` is set.
       left_[k] = k >= 2 ? kClocksOfScan * (k + 3) + below(1000) : kLongestWait + 10 + below(1000);
       if (fast_ && k < 2 && below(4) == 0) left_[k] = below(60);
     }
@@ -101,7 +101,7 @@ class QueueJudge : public CoreBench {
   }
   bool queue_grew() { return (read(reg::kCaptureQueue) & field::kCaptureQueueCaptures) != 0; }
 
-  // The oldest one is of the first edge that may have its time; those before it are gone.
+  // The oldest entry belongs to the first edge that fits its time; earlier edges are lost.
   void take(std::uint32_t queue) {
     const unsigned k = queue >> field::kCaptureQueueUnitNumberShift & 3;
     const bool active = (queue & field::kCaptureQueueActive) != 0;
@@ -115,7 +115,7 @@ class QueueJudge : public CoreBench {
     EXPECT_GE(time, edges.front().clock + kFromPin);
     if (time == edges.front().clock + kFromPin) ++exact;
     edges.pop_front();
-    // Before the comparison: a read clocks the card, whose positions move in memory then.
+    // Read before the comparison: each read clocks the card and may move `positions_` in memory.
     const auto captured = static_cast<std::int32_t>(read(reg::capture_head_position(0)));
     EXPECT_EQ(captured, positions_.at(time));
   }
@@ -131,7 +131,7 @@ class QueueJudge : public CoreBench {
   std::array<std::uint64_t, kWatched> left_{};  // clocks to the next edge
   std::array<std::deque<EdgeAtPin>, kWatched> edges_{};
   std::array<std::uint64_t, kWatched> gone_{};
-  std::vector<std::int32_t> positions_;  // by clocks
+  std::vector<std::int32_t> positions_;  // indexed by clock
   bool stands_ = false;
 };
 
@@ -160,7 +160,7 @@ TEST(CaptureFifo, EdgesTooFastAreTold) {
   EXPECT_GT(card.missing, 20U);
 }
 
-// A write that comes twice, or late, drops nothing else.
+// A repeated or late write of CAPTURE_NEXT drops nothing else.
 TEST(CaptureFifo, OnlyTheNumberNamedIsDropped) {
   model::CaptureFifo queue;
   const std::uint32_t area[model::CaptureFifo::kWords] = {7};

@@ -1,6 +1,6 @@
-// A judge of captures that knows only the pins: switches that bounce behind filters of all lengths, glitches, and axes
-// that move meanwhile. Every genuine edge is captured, with the time of its first touch and the positions that the pins
-// had then; nothing else is.
+// Judges captures from the pins alone: switches that bounce behind filters of all lengths, glitches, and moving axes.
+// Each genuine edge must be captured with the time of its first touch and the positions that the pins had then; nothing
+// else may be captured.
 #include "trammel/model/captures.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint64_t kScan = 64;    // clocks
-constexpr std::uint64_t kLatency = 2;  // clocks from the one that first samples the pin's level to the snapshot's
+constexpr std::uint64_t kLatency = 2;  // clocks from the first sample of the level to the time of the snapshot
 constexpr std::uint64_t kFullRate = ~std::uint64_t{0};
 
 using Random = std::mt19937_64;
@@ -30,14 +30,14 @@ struct Edge {
   bool to_active = false;
 };
 
-// A switch at a pin, a filter of `scans` behind it. It stands for long, or bounces: no level of a bounce lasts longer
-// than the filter's length, so that none of them passes, and none of the old level is quiet. Without a filter each
-// change is an edge of its own.
+// A switch at a pin with a filter of `scans` scans. It is quiet for long or bounces. No level during a bounce lasts
+// longer than the filter, so none of them passes and the old level never counts as quiet. Without a filter each change
+// is an edge of its own.
 class Switch {
  public:
   Switch(Random& random, std::uint64_t scans) : random_(random), scans_(scans), left_(200 + below(500)) {}
 
-  // The level of this clock. `calm`: no touch begins. The genuine edges, once each, as soon as it is decided.
+  // Level in this clock. `calm`: no touch begins. Adds each genuine edge to `edges` once, as soon as it is decided.
   bool level(std::uint64_t clock, bool calm, std::vector<Edge>& edges) {
     if (left_ != 0) --left_;
     if (left_ != 0 || (bounces_ == 0 && calm)) return level_;
@@ -46,7 +46,7 @@ class Switch {
       edges.push_back({clock, level_});
       left_ = below(4) == 0 ? 1 + below(5) : 150 + below(2000);
     } else if (bounces_ == 0) {
-      // An odd number of changes leads to the other level, an even one back: a glitch.
+      // An odd number of further changes returns to the old level (a glitch), an even number ends at the new one.
       bounces_ = below(12);
       if (bounces_ % 2 == 0) edges.push_back({clock, level_});
       glitches_ += bounces_ % 2;
@@ -69,7 +69,7 @@ class Switch {
 
   Random& random_;
   std::uint64_t scans_;
-  std::uint64_t left_;  // clocks at this level
+  std::uint64_t left_;  // clocks left at this level
   std::uint64_t bounces_ = 0;
   std::uint64_t glitches_ = 0;
   bool level_ = false;
@@ -78,17 +78,17 @@ class Switch {
 struct Round {
   unsigned axes = 4;
   unsigned units = 4;
-  std::uint64_t longest = 3;  // filter, scans
-  bool host = true;           // takes snapshots at any time
+  std::uint64_t longest = 3;  // longest filter, scans
+  bool host = true;           // the host takes snapshots at any time
 };
 
-// What the judge expects of a unit, from the pins alone.
+// Expected state of a unit, computed from the pins alone.
 struct Watched {
   unsigned input = 0;
   std::uint32_t select = 0;
-  bool off = false;        // one-shot, taken
-  std::deque<Edge> due{};  // the one to be captured
-  bool lost = false;       // a further one came before the host had read
+  bool off = false;        // one-shot unit that has captured
+  std::deque<Edge> due{};  // the edge to be captured
+  bool lost = false;       // another edge came before the host had read
 };
 
 class Judge : public CoreBench {
@@ -140,7 +140,7 @@ class Judge : public CoreBench {
     return config;
   }
 
-  // Lines of all axes, a step in six clocks or more.
+  // Lines of all axes with at least six clocks between steps.
   void keep_moving() {
     if ((core.outputs().status & field::kStatusBusy) != 0) return;
     std::vector<std::int64_t> increments;
@@ -172,7 +172,7 @@ class Judge : public CoreBench {
     }
   }
 
-  // The pins' own count of pulses, and whether a snapshot is being written, by clocks.
+  // Records for each clock the pulses counted at the pins, and whether a snapshot is being written.
   void look() {
     const std::uint32_t rises = core.outputs().step & ~step_;
     step_ = core.outputs().step;
@@ -182,7 +182,7 @@ class Judge : public CoreBench {
     history_.back() = {now_, (core.outputs().status & field::kStatusSnapshot) != 0};
   }
 
-  // While a unit begins anew no edge comes, so that nobody need ask whether it counts.
+  // Runs `act` while no input has an edge, so that no edge can fall into the restart of a unit.
   void quietly(const std::function<void()>& act) {
     calm_ = true;
     while (!std::all_of(switches_.begin(), switches_.end(), [](const Switch& s) { return s.stands(); })) idle(1);
@@ -202,7 +202,7 @@ class Judge : public CoreBench {
     });
   }
   void reselect(unsigned k) {
-    // What is due must come before it is dropped.
+    // A pending edge must be captured before the new selection drops it.
     quietly([this, k] {
       const std::uint32_t state = read(reg::kCaptureState);
       EXPECT_EQ((state >> (4 + k) & 1) != 0, !watched_[k].due.empty());
@@ -211,7 +211,7 @@ class Judge : public CoreBench {
     select(k);
   }
 
-  // Reads what unit k has captured, and clears it.
+  // Checks the capture of unit k and clears it.
   void take(unsigned k, std::uint32_t state) {
     Watched& w = watched_[k];
     ASSERT_FALSE(w.due.empty()) << "unit " << k << ": a capture of no edge, clock " << core.cycles();
@@ -232,7 +232,8 @@ class Judge : public CoreBench {
     latest = std::max(latest, late);
     quietly([&] {
       const std::uint32_t last = read(reg::kCaptureState);
-      // Bounces of an input without a filter count as lost here, though the unit was still busy with the first of them.
+      // Bounces of an input without a filter count as lost here, although the unit was still busy with the first of
+      // them.
       const bool overrun = (last >> (8 + k) & 1) != 0;
       EXPECT_TRUE(w.lost || !overrun);
       const bool goes_on = (w.select & field::kCaptureSelectContinuous) != 0;
@@ -245,8 +246,8 @@ class Judge : public CoreBench {
     });
     if (w.off && random_() % 4 == 0) select(k);
   }
-  // Of one unit: a snapshot under way and a clock between. Of several: those of the others, of the host and its next
-  // one.
+  // Longest delay of a snapshot. One unit: the snapshot in progress and one clock. Several units: the snapshots of the
+  // other units, of the host, and the host's next one.
   std::uint64_t bound() const {
     const std::uint64_t one = round_.axes + 12;
     return round_.units == 1 ? one : (round_.units + 2) * one;
@@ -262,7 +263,7 @@ class Judge : public CoreBench {
   std::array<std::uint64_t, kInputs> scans_{};
   std::vector<Switch> switches_;
   std::array<Watched, 4> watched_{};
-  std::vector<Seen> history_;  // by clocks
+  std::vector<Seen> history_;  // indexed by clock
   std::array<std::int32_t, card_map::kMaxAxes> now_{};
   std::uint32_t step_ = 0;
   bool calm_ = true;
@@ -302,8 +303,8 @@ TEST(Captures, FourUnits) {
   }
 }
 
-// Four inputs that never stand for long, a unit on each, and the shortest filter: a snapshot of the host is taken
-// behind one capture's at the latest, and every access gets through.
+// Four inputs that never rest for long, a unit on each, and the shortest filter. A snapshot of the host waits for at
+// most one capture, and every access is answered.
 TEST(Captures, InputsThatChatterDoNotKeepTheHostWaiting) {
   model::CardConfig config;
   config.axes = 8;
@@ -321,7 +322,7 @@ TEST(Captures, InputsThatChatterDoNotKeepTheHostWaiting) {
     for (unsigned n = 0; n < 4; ++n) {
       if (left[n]-- != 0) continue;
       card.pins ^= 1U << n;
-      left[n] = (card.pins >> n & 1) != 0 ? 0 : 60 + random() % 20;  // quiet, but for a clock
+      left[n] = (card.pins >> n & 1) != 0 ? 0 : 60 + random() % 20;  // quiet except for pulses of one clock
     }
   };
   const std::uint64_t one = config.axes + 12;
@@ -340,7 +341,7 @@ TEST(Captures, InputsThatChatterDoNotKeepTheHostWaiting) {
   EXPECT_GT(card.read(reg::kCaptureState) >> field::kCaptureStateSnapshotsShift, 1000U);
 }
 
-// Probing along +X, a step in six clocks; input 2 trips when it is high, behind a filter.
+// Probing along +X with a step every six clocks; input 2 trips when it is high, behind a filter.
 class ProbeBehindAFilter : public CoreBench {
  public:
   explicit ProbeBehindAFilter(std::uint32_t scans, std::uint32_t engines = model::RegisterFile::kMaxEngines)
@@ -354,7 +355,7 @@ class ProbeBehindAFilter : public CoreBench {
     EXPECT_TRUE(probe_end());
     idle(500);
   }
-  // A level of the input, for so many clocks; the clock that samples it first.
+  // Keeps the input at a level for `clocks`; returns the first clock that samples it.
   std::uint64_t stand(bool level, std::uint64_t clocks) {
     pins = level ? 4 : 0;
     const std::uint64_t touch = core.cycles() + 1;
@@ -415,8 +416,8 @@ TEST(ProbeWithCaptures, AGlitchTripsNothing) {
   EXPECT_GT(card.core.position(0), 6'000U);
 }
 
-// Without captures the snapshot is that of the filter's end; without a filter captures make it a clock earlier, and
-// change nothing else.
+// Without captures the snapshot is taken at the end of the filter. Without a filter, captures make it one clock earlier
+// and change nothing else.
 TEST(ProbeWithCaptures, WithoutThemTheFilterCounts) {
   constexpr std::uint32_t kWithout =
       model::RegisterFile::kMaxEngines & ~(card_map::engines::kCaptures | card_map::engines::kCaptureFifo);
@@ -435,7 +436,7 @@ TEST(ProbeWithCaptures, WithoutThemTheFilterCounts) {
     EXPECT_FALSE(card.has(field::kStatusBusy));
     logs[with ? 1 : 0] = card.log;
   }
-  // The PROBE area is written a clock later, which an access of the host may notice.
+  // The PROBE area is written one clock later, which may delay an access of the host.
   const auto same = [](const CoreBench::Shown& a, const CoreBench::Shown& b) {
     return a.outputs.step == b.outputs.step && a.outputs.dir == b.outputs.dir && a.position == b.position;
   };

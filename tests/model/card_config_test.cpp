@@ -1,5 +1,5 @@
-// What no card can be built with is refused, each by its message; and two states of the pins are equal only where all
-// of them are.
+// Each impossible configuration of a card is refused with its own message; and two states of the pins are equal only if
+// all pins are equal.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -86,7 +86,7 @@ TEST(CardConfig, WhatItWasMadeOfIsRead) {
   }
 }
 
-// A lockstep compares cards by it: a difference in any one shows.
+// Locksteps compare cards with this operator, so a difference in any one output must show.
 TEST(CoreOutputs, DifferWhereOneOfThemDoes) {
   using Outputs = CoreModel::Outputs;
   const std::function<void(Outputs&)> changes[] = {
@@ -108,7 +108,7 @@ TEST(CoreOutputs, DifferWhereOneOfThemDoes) {
   }
 }
 
-// Of writes, by the register's own limits.
+// Writes beyond the limits of a register, and partial writes.
 TEST(CoreRefusals, OfValuesAndOfParts) {
   CoreBench bench;
   const auto refused = [&](std::uint32_t address, std::uint32_t value) {
@@ -130,7 +130,7 @@ TEST(CoreRefusals, OfValuesAndOfParts) {
   EXPECT_EQ(refused(reg::kMagic, 1), card_map::Reason::ReadOnly);
   EXPECT_EQ(refused(0xFFC, 1), card_map::Reason::UnknownAddress);
   EXPECT_EQ(bench.read(reg::kHoldLimit), 1U);
-  // A write of less than a word, from a bus that makes such.
+  // A write of less than a word, from a bus that can do this.
   model::CoreModel::Inputs part;
   part.request = part.write = part.partial = true;
   part.address = reg::kHoldLimit;

@@ -1,4 +1,4 @@
-// CardModel::run() against clock(): the same programs on two cards, one of which goes from tick to tick.
+// CardModel::run() against clock(): the same programs run on two cards, one of which jumps from tick to tick.
 #include "trammel/model/card_model.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using namespace trammel;
 using model::CardModel;
 namespace reg = card_map::reg;
 
-// A card with a host; `skips` says how it spends idle time.
+// A card with a host; `skips` selects how it spends idle time.
 class Card {
  public:
   explicit Card(bool skips) : skips_(skips), model_(CardModel::Config{}) { model_.set_steps(&steps); }
@@ -89,7 +89,7 @@ driver::LineCommand line(std::uint64_t ticks, std::int64_t pulses_x, std::int64_
   return result;
 }
 
-// Waits of all lengths, that the ends of jumps fall everywhere.
+// Waits of many lengths, so that the jumps end at all kinds of clocks.
 void wait_in_pieces(Pair& pair, std::mt19937_64& random, std::uint64_t clocks) {
   while (clocks != 0) {
     const std::uint64_t piece = std::min<std::uint64_t>(clocks, 1 + random() % (random() % 4 == 0 ? 4000 : 90));

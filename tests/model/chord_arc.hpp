@@ -1,5 +1,5 @@
-// From an arc's points to what ARC_CHORD carries, by the driver, and the path that the fields make by the rule of their
-// increments alone.
+// Turns the points of an arc into the fields of ARC_CHORD (with the driver), and computes the path of these fields from
+// the rule for their increments alone.
 #pragma once
 
 #include <algorithm>
@@ -19,16 +19,17 @@ struct Radii {
   long double mean() const { return (start + end) / 2; }
 };
 
-// Start and end in pulses, the centre in 1/256 pulses. Start and end alike: a whole turn, and `turns` further ones.
+// Start and end in pulses, the centre in 1/256 pulses. Equal start and end mean one whole turn plus `turns` further
+// ones.
 struct ArcPoints {
   std::array<std::int64_t, 2> start{}, end{}, centre{};
   bool clockwise = false;
   unsigned turns = 0;
-  unsigned ticks_a_pulse = 8;  // at least
+  unsigned ticks_a_pulse = 8;  // minimum
   std::uint8_t axis_x = 0;
   std::uint8_t axis_y = 1;
 
-  // Without the further turns; above 0.
+  // Angle from start to end without the further turns; above 0.
   long double sweep() const {
     const long double from = std::atan2(from_centre(start, 1), from_centre(start, 0));
     const long double to = std::atan2(from_centre(end, 1), from_centre(end, 0));
@@ -58,7 +59,7 @@ inline ChordFields fields_of(const driver::ArcChordCommand& arc) {
   return fields;
 }
 
-// As a host prepares it, at the density that the arc wants.
+// The command as a host prepares it. `ticks_a_pulse` determines the number of path ticks.
 inline driver::ArcChordCommand prepare_command(const ArcPoints& arc, const std::array<std::int64_t, 8>& further = {}) {
   driver::HelixGeometry helix;
   driver::ArcGeometry& geometry = helix.arc;
@@ -79,26 +80,26 @@ inline driver::ArcChordCommand prepare_command(const ArcPoints& arc, const std::
 
 inline ChordFields prepare_chords(const ArcPoints& arc) { return fields_of(prepare_command(arc)); }
 
-// The path of an arc from one step to the next, and its chords.
+// The path of an arc, computed from step to step, and its chords.
 class ChordPath {
  public:
   explicit ChordPath(const ChordFields& fields) : left_(fields.path_ticks), rotation_{fields.state} {
-    // The chords in force from the second tick on; the first tick has increments of its own.
+    // These chords apply from the second tick on; the first tick has increments of its own.
     increment_[1] = rotation_.chord_y();
     increment_[0] = rotation_.chord_x();
     half_ = std::uint64_t{1} << (fields.state.m - 1);
     run(1, fields.first, [] {});
   }
 
-  const std::array<std::int64_t, 2>& position() const { return position_; }  // from the start, pulses
-  std::uint64_t ticks() const { return ticks_; }                             // made
+  const std::array<std::int64_t, 2>& position() const { return position_; }  // pulses from the start
+  std::uint64_t ticks() const { return ticks_; }                             // path ticks made so far
 
-  // `visit()` after each tick with a step, from the second tick on.
+  // Calls `visit()` after each tick that makes a step, from the second tick on.
   template <class Visit>
   void finish(Visit visit) {
     while (left_ != 0) half(visit);
   }
-  // On to the end of the half chord under way, or of the path.
+  // Runs to the end of the current half chord or of the path.
   template <class Visit>
   void half(Visit visit) {
     run(std::min(half_ - ticks_ % half_, left_), increment_, visit);
@@ -109,12 +110,12 @@ class ChordPath {
       increment_[0] = rotation_.chord_x();
   }
   std::uint64_t left() const { return left_; }
-  const std::array<std::int64_t, 2>& increment() const { return increment_; }  // of the next tick
+  const std::array<std::int64_t, 2>& increment() const { return increment_; }  // increments of the next tick
 
  private:
   static constexpr std::int64_t kOne = std::int64_t{1} << 40;
 
-  // How many ticks in a row make no step.
+  // Number of consecutive ticks without a step.
   std::uint64_t silent(unsigned axis, std::int64_t by) const {
     if (by == 0) return UINT64_MAX;
     return static_cast<std::uint64_t>(by > 0 ? (kOne - 1 - phase_[axis]) / by : phase_[axis] / -by);

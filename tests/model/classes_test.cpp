@@ -1,4 +1,5 @@
-// Classes of pieces on the golden model of the whole core: whose ratio holds when, and which pieces a HOLD lets end.
+// Classes of pieces on the golden model of the whole core: which ratio applies when, and which pieces end before a
+// HOLD.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -18,7 +19,7 @@ constexpr std::uint32_t kWhole = 0x10000;
 constexpr std::uint64_t kEvery16 = std::uint64_t{1} << 60;  // rate: a tick in 16 enabled clocks
 constexpr std::uint64_t kTicks = 500;
 
-// A core with a program of one line a piece, each of 500 ticks and 50 steps, in these classes.
+// A core with one piece per class in `classes`; each piece carries one line of 500 ticks and 50 steps.
 struct Bench : CoreBench {
   explicit Bench(const std::vector<std::uint8_t>& classes) {
     idle(300);
@@ -34,7 +35,7 @@ struct Bench : CoreBench {
     write(reg::kRatioRapid, rapid);
     write(reg::kRatioFixed, fixed);
   }
-  // Until so many paths have begun and so many ticks of the last of them are taken.
+  // Runs until `paths` paths have begun and the last of them has taken `path_ticks` ticks.
   void until(std::uint32_t paths, std::uint64_t path_ticks) {
     std::uint64_t seen = 0;
     while (core.outputs().geometry_begun < paths) clock({});
@@ -46,7 +47,7 @@ struct Bench : CoreBench {
   bool held() const { return (core.outputs().status & field::kStatusHeld) != 0; }
 };
 
-// Clocks that a piece takes follow from its class's ratio alone: 16 * 500 / ratio.
+// The clocks of a piece depend only on the ratio of its class: 16 * 500 / ratio.
 TEST(Classes, EachPieceRunsAtItsOwnRatio) {
   const std::vector<std::uint8_t> classes{kFeedClass, kRapidClass, kFixedClass, kFixedClass, kRapidClass, kFeedClass};
   for (const auto& [feed_ratio, rapid, fixed] :
@@ -64,8 +65,8 @@ TEST(Classes, EachPieceRunsAtItsOwnRatio) {
         while ((bench.core.outputs().status & field::kStatusPathActive) != 0) bench.clock({});
       const std::uint64_t now = bench.core.cycles();
       if (path > 1) {
-        // From the second tick of one path to that of the next, of the last one to its end; the ratio changes
-        // meanwhile.
+        // From the second tick of one path to that of the next, or to the end of the last one; the ratio changes in
+        // between.
         const double ticks = path <= classes.size() ? kTicks : kTicks - 2;
         EXPECT_NEAR(static_cast<double>(now - before), 16.0 * ticks * kWhole / ratio_of[classes[path - 2]], 200)
             << path << " ratio " << ratio_of[classes[path - 2]];
@@ -75,7 +76,7 @@ TEST(Classes, EachPieceRunsAtItsOwnRatio) {
   }
 }
 
-// Overrides of the others in the middle of a piece: its ratio stays to the clock, and its time is that of its own.
+// Overrides of other classes in the middle of a piece: the ratio stays constant in every clock, and so does the time.
 TEST(Classes, AnOverrideMovesItsOwnClassAlone) {
   for (const std::uint8_t running : {kFeedClass, kRapidClass, kFixedClass}) {
     Bench bench({running});
@@ -99,7 +100,7 @@ TEST(Classes, AnOverrideMovesItsOwnClassAlone) {
   }
 }
 
-// The path-step list knows nothing of ratios, holds and their moments.
+// The list of path steps does not depend on ratios, holds or their times.
 TEST(Classes, ThePathIsTheSameWhateverTheTimeBaseDoes) {
   const std::vector<std::uint8_t> classes{kFeedClass, kFixedClass, kFixedClass, kRapidClass,
                                           kFeedClass, kFixedClass, kRapidClass};
@@ -129,13 +130,13 @@ TEST(Classes, ThePathIsTheSameWhateverTheTimeBaseDoes) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) ASSERT_TRUE(run(seed) == path) << seed;
 }
 
-// Set in a fixed piece, HOLD takes at the end of the last of them in a row; abort does not wait.
+// A HOLD during a fixed piece begins after the last of consecutive fixed pieces; abort does not wait.
 TEST(Classes, AHoldLetsFixedPiecesEnd) {
   Bench bench({kFeedClass, kFixedClass, kFixedClass, kFixedClass, kRapidClass});
   bench.write(reg::kHold, 0);
   bench.until(2, 100);
   bench.write(reg::kHold, 1);
-  // 1,400 ticks at 16 clocks, all at the full ratio.
+  // 1,400 ticks of 16 clocks, all at the full ratio.
   for (std::uint64_t clock = 0; clock < 22'300; ++clock) {
     bench.clock({});
     ASSERT_EQ(bench.core.outputs().ratio, kWhole) << clock;
@@ -162,8 +163,8 @@ TEST(Classes, AHoldLetsFixedPiecesEnd) {
   EXPECT_TRUE(cut.held()) << "nothing moves any more";
 }
 
-// Around the border of a feed and a fixed piece, clock by clock: HOLD takes before it or after it, and nothing in
-// between.
+// HOLD in each clock around the border of a feed and a fixed piece: it takes effect before the fixed piece or after it,
+// never within it.
 TEST(Classes, AHoldAtTheBorderTakesBeforeOrAfterTheFixedPiece) {
   Bench probe({kFeedClass, kFixedClass, kFeedClass});
   probe.write(reg::kHold, 0);
@@ -195,7 +196,7 @@ TEST(Classes, AHoldAtTheBorderTakesBeforeOrAfterTheFixedPiece) {
   EXPECT_GT(after, 10U);
 }
 
-// On a slow ramp to a hold a fixed piece begins: it is let end, at its own ratio again, and then the hold goes on.
+// A fixed piece begins during a slow ramp to a hold. It ends at its own ratio, then the hold goes on.
 TEST(Classes, AFixedPieceThatBeginsOnTheWayToAHoldIsLetEnd) {
   Bench bench({kFeedClass, kFixedClass, kFeedClass});
   bench.write(reg::kHold, 0);
@@ -215,13 +216,13 @@ TEST(Classes, AFixedPieceThatBeginsOnTheWayToAHoldIsLetEnd) {
   EXPECT_LT(steps, 150U);
 }
 
-// A hold with nothing moving, or come to rest, is not undone by a fixed piece that is sent then.
+// A fixed piece that is sent while the machine is at rest in a hold does not end the hold.
 TEST(Classes, AFixedPieceSentInAHoldDoesNotMove) {
   Bench bench({kFixedClass, kFixedClass});
   bench.idle(50'000);
   EXPECT_TRUE(bench.held());
   EXPECT_TRUE(bench.steps.path.empty());
-  // Set while nothing runs, on a slow ramp: the piece that comes meanwhile goes on to rest with it.
+  // HOLD is set while nothing runs, with a slow ramp. A piece that is sent during the ramp ramps down with it.
   CoreBench late;
   late.idle(300);
   late.write(reg::kSlew, 0x2'0000);
@@ -234,13 +235,13 @@ TEST(Classes, AFixedPieceSentInAHoldDoesNotMove) {
   EXPECT_LT(late.steps.path.size(), 40U);
 }
 
-// A fault that stops on a ramp does so in a fixed piece too.
+// A fault with a ramped stop does not wait for the end of a fixed piece.
 TEST(Classes, ARampedFaultDoesNotWait) {
   Bench bench({kFixedClass});
   bench.write(reg::kStopReaction, 1);
   bench.write(reg::kSlew, 0x10'0000);
   bench.write(reg::kHoldLimit, 10);
-  bench.write(reg::step_space(0), 5000);  // the second step waits for too long
+  bench.write(reg::step_space(0), 5000);  // the second step waits too long
   bench.write(reg::kHold, 0);
   bench.idle(20);
   while ((bench.core.outputs().status & field::kStatusStopping) == 0) bench.clock({});
@@ -253,8 +254,8 @@ TEST(Classes, ARampedFaultDoesNotWait) {
   EXPECT_EQ(bench.core.outputs().status & field::kStatusFeedActive, 0U);
 }
 
-// Between pieces, at a barrier and after the end the ratio stays that of the last class; a cut and a direct move are
-// feed.
+// Between pieces, at a barrier and after the end, the ratio stays that of the last class. A cut and a direct move
+// select the feed ratio.
 TEST(Classes, TheLastClassStaysBetweenPieces) {
   CoreBench bench;
   bench.idle(300);
@@ -290,7 +291,7 @@ TEST(Classes, TheLastClassStaysBetweenPieces) {
   EXPECT_NE(bench.core.outputs().status & field::kStatusDirect, 0U);
 }
 
-// Watermarks over the bus: STATUS, the interrupt and what refuses.
+// Watermarks over the bus: STATUS, the interrupt, and refused values.
 TEST(Watermarks, ShowInStatusAndRaiseTheInterrupt) {
   CoreBench bench;
   bench.idle(300);
@@ -305,7 +306,7 @@ TEST(Watermarks, ShowInStatusAndRaiseTheInterrupt) {
   EXPECT_TRUE(bench.core.outputs().irq);
   EXPECT_EQ(bench.read(reg::kStatus) & (field::kStatusFeedLow | field::kStatusGeometryLow),
             field::kStatusFeedLow | field::kStatusGeometryLow);
-  // One has begun, of the next 12 halfwords are decoded.
+  // One piece has begun, and 12 halfwords of the next one are decoded.
   for (int i = 0; i < 4; ++i) bench.feed(100, kEvery16);
   bench.idle(60);
   EXPECT_FALSE(bench.core.outputs().irq);

@@ -1,5 +1,5 @@
-// The checker's model against the layout table: what it lets in, what it refuses and why, and that nothing of a refused
-// command is ever committed.
+// The model of the checker against the layout table: which commands it accepts, which it refuses and why. No part of a
+// refused command is ever committed.
 #include "trammel/model/command_checker.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using trammel::testing::WireCommand;
 
 using Halfwords = std::vector<std::uint16_t>;
 
-// A checker with a host before it and two queues of any room after it.
+// A checker between a host and two queues with adjustable room.
 class Stream {
  public:
   explicit Stream(unsigned axes, std::uint32_t engines = kUsualEngines) : checker_(axes, engines) {}
@@ -54,7 +54,7 @@ class Stream {
     refused_number = out.number;
   }
 
-  // True when the word was taken; the answer must come after exactly the time that the header promises.
+  // True when the word was accepted. The answer must take exactly the clocks that the header of the model promises.
   bool write(std::uint32_t word, int answer_clocks = CommandChecker::kAnswerClocks) {
     CommandChecker::Inputs in;
     in.write = true;
@@ -71,7 +71,7 @@ class Stream {
     return refusals.size() == refused;
   }
 
-  // Sends words until one is refused; true when all were taken.
+  // Sends words until one is refused; true when all were accepted.
   bool send(const std::vector<std::uint32_t>& words) {
     for (const std::uint32_t word : words) {
       if (!write(word)) return false;
@@ -136,7 +136,8 @@ TEST(CommandChecker, StoresEveryKindOfCommandExactly) {
   }
 }
 
-// A line by hand, so that the layout table is not its own only judge: 0x3322221111 ticks, X 2^-40 pulses a tick, Z -1.
+// A line coded by hand, so that the layout table is not only compared with itself: 0x3322221111 ticks, X 2^-40 pulses
+// per tick, Z -1.
 TEST(CommandChecker, StoresThisLine) {
   Stream stream(4);
   ASSERT_TRUE(stream.send({0x00060501, 0x22221111, 0x00010033, 0x00000000, 0x00000000, 0x0000FF00}));
@@ -170,13 +171,13 @@ TEST(CommandChecker, RefusesEverySingleViolationWithItsReason) {
   }
 }
 
-// By hand: which opcodes which engine brings.
+// A list made by hand: the engine that each opcode needs.
 TEST(CommandChecker, KnowsTheCommandsOfItsEnginesAlone) {
   const std::vector<std::pair<unsigned, unsigned>> needs = {{1, 0},  {2, 1},  {3, 3},  {16, 0}, {32, 0}, {33, 0},
                                                             {34, 7}, {35, 7}, {36, 7}, {37, 7}, {38, 7}};
   for (const auto& [opcode, engine] : needs) {
     const Command& layout = *trammel::card_map::find_command(static_cast<std::uint8_t>(opcode));
-    // Lines are on every card.
+    // Every card has the engine for lines.
     for (const std::uint32_t engines : {kAllEngines, (kAllEngines & ~(1U << engine)) | 1U}) {
       SCOPED_TRACE(std::string(layout.name) + " with engines " + std::to_string(engines));
       CommandSource source(4, opcode, engines);
@@ -209,7 +210,8 @@ TEST(CommandChecker, StepRuleAndClassNeedTheirEngines) {
   }
 }
 
-// While a fault stands a word is refused unread: nothing closes, nothing is dropped, the number stays.
+// A word that arrives during a fault is refused without being decoded: nothing is closed or dropped, and the expected
+// number stays.
 TEST(CommandChecker, RefusesWordsAsFaultedWhileAFaultStands) {
   CommandSource source(4, 31);
   Stream stream(4);
@@ -258,8 +260,9 @@ TEST(CommandChecker, PassesRandomStreamsAndWrapsTheNumber) {
   EXPECT_EQ(stream.feed.committed, feed);
 }
 
-// Words with three bits turned over. What is taken nevertheless has become another good command (DWELL for END, other
-// axes, another value; a short one in place of a long one's first words), and stands in its queues exactly as sent.
+// Words with three flipped bits. An accepted command has become another valid command (DWELL for END, other axes,
+// another value, or a short command in place of the first words of a long one); the queues must hold exactly its
+// halfwords.
 TEST(CommandChecker, CommitsWhatWasSentOrNothing) {
   CommandSource source(4, 13);
   auto& random = source.random();
@@ -296,7 +299,7 @@ TEST(CommandChecker, NeverCommitsGarbage) {
   for (int i = 0; i < 200000; ++i) {
     if (!stream.write(static_cast<std::uint32_t>(source.random()()))) stream.clear();
   }
-  // A random first word is right about once in 10^7.
+  // The probability that a random first word is valid is about 10^-7.
   EXPECT_TRUE(stream.geometry.committed.empty() && stream.feed.committed.empty());
 }
 

@@ -18,11 +18,11 @@ __extension__ typedef unsigned __int128 uint128;
 inline constexpr std::size_t kCountBegin = 2;
 inline constexpr std::size_t kPayloadBegin = 5;
 inline constexpr std::uint64_t kCountMaximum = (std::uint64_t{1} << 40) - 1;
-// Lines, accumulator, jerk and direct mode: what a card has that is built with everything there is.
+// Lines, accumulator, jerk and direct mode.
 inline constexpr std::uint32_t kUsualEngines = 0x33;
 inline constexpr std::uint32_t kAllEngines = 0x7FF;
 
-// A command as it stands on the wire, without padding.
+// The halfwords of a command as they are sent, without padding.
 struct WireCommand {
   const card_map::Command* layout = nullptr;
   std::vector<std::uint16_t> halfwords;
@@ -44,7 +44,7 @@ struct WireCommand {
     for (std::size_t i = 0; i < padded.size(); i += 2) result.push_back(padded[i] | std::uint32_t{padded[i + 1]} << 16);
     return result;
   }
-  // What the queues hold: halfword 1 left out.
+  // The halfwords that the queues hold: all but halfword 1.
   std::vector<std::uint16_t> stored() const {
     std::vector<std::uint16_t> result = halfwords;
     result.erase(result.begin() + 1);
@@ -52,7 +52,7 @@ struct WireCommand {
   }
 };
 
-// Where a field of a command lies on the wire.
+// The first halfword of a field in a command.
 struct Place {
   const card_map::Field* field;
   std::size_t begin;
@@ -72,11 +72,11 @@ inline std::vector<Place> places(const card_map::Command& layout, std::uint8_t m
 
 class CommandSource {
  public:
-  // engines: of the card that shall take the commands.
+  // `engines` are those of the card that receives the commands.
   CommandSource(unsigned axes, std::uint64_t seed, std::uint32_t engines = kUsualEngines)
       : axes_(axes), engines_(engines), random_(seed) {}
 
-  // What the card has for a command with this layout.
+  // True when a card with these axes and engines accepts commands of this layout.
   static bool possible(const card_map::Command& layout, unsigned axes, std::uint32_t engines) {
     const bool plane =
         layout.mask_rule == card_map::MaskRule::Plane || layout.mask_rule == card_map::MaskRule::PlaneAndAxes;
@@ -85,7 +85,7 @@ class CommandSource {
 
   std::mt19937_64& random() { return random_; }
 
-  // Any command that the card can take.
+  // A random command that the card accepts.
   WireCommand any(std::uint8_t number) {
     const card_map::Command* layout = nullptr;
     do {
@@ -139,7 +139,7 @@ class CommandSource {
     return mask;
   }
 
-  // Bounds often, small numbers often, else anywhere.
+  // The bounds and small numbers are frequent.
   uint128 random_between(uint128 low, uint128 high) {
     const std::uint64_t kind = random_() % 8;
     if (kind == 0 || high == low) return low;
@@ -162,7 +162,7 @@ class CommandSource {
     return random_between(field.minimum, high);
   }
 
-  // Any two axes of the mask, in any order.
+  // Two random axes of the mask, in random order.
   uint128 random_plane(std::uint8_t mask, std::uint32_t bits) {
     unsigned first = 0;
     unsigned second = 0;
@@ -178,7 +178,7 @@ class CommandSource {
   std::mt19937_64 random_;
 };
 
-// A command with one thing wrong in it.
+// A command with one error.
 struct Violation {
   std::string name;
   WireCommand command;
@@ -281,7 +281,7 @@ inline void add_plane_violations(std::vector<Violation>& list, const WireCommand
   const auto plane = static_cast<unsigned>(good.value(place.begin, 1));
   const unsigned both = 1U << (plane >> 4 & 7) | 1U << (plane >> 8 & 7);
   for (unsigned mask = 1; mask < 1U << axes; ++mask) {
-    // With more or fewer further axes the length would be wrong first.
+    // Another number of further axes would make the length wrong first.
     const bool same_length = card_map::axes_in(static_cast<std::uint8_t>(mask)) == card_map::axes_in(good.mask());
     const bool alone = good.layout->axis_halfwords == 0;
     if ((alone ? mask == good.mask() : (mask & both) == both) || (!alone && !same_length)) continue;
@@ -293,7 +293,7 @@ inline void add_plane_violations(std::vector<Violation>& list, const WireCommand
 
 }  // namespace detail
 
-// Every way to get one thing of `good` wrong that the layout knows of.
+// All single errors in `good` that the layout table can describe.
 inline std::vector<Violation> violations(const WireCommand& good, unsigned axes,
                                          std::uint32_t engines = kUsualEngines) {
   std::vector<Violation> list;

@@ -1,4 +1,4 @@
-// A host at the inner register port of the golden core, and stream commands made from the layout table alone.
+// A host at the inner register port of the golden core; its stream commands come from the layout table alone.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 
 namespace trammel::testing {
 
-// Of random tests.
+// Seed of random tests.
 inline std::uint64_t seed() {
   const char* given = std::getenv("TRAMMEL_SEED");
   return given != nullptr ? std::stoull(given) : 1;
@@ -28,7 +28,7 @@ inline std::uint64_t seed() {
 
 __extension__ typedef __int128 int128;
 
-// A command on the wire. Fields by name; those that are not named are 0. `increments`: of the mask's axes.
+// A command as it is sent. Fields are given by name; missing ones are 0. `increments` are those of the mask's axes.
 using Field = std::pair<std::string_view, int128>;
 
 inline void put_halfwords(std::vector<std::uint16_t>& to, std::size_t at, std::size_t count, int128 value) {
@@ -76,7 +76,7 @@ class StepRecorder : public model::CardSteps {
 
 class CoreBench {
  public:
-  // All that shows after a clock.
+  // All visible state after a clock.
   struct Shown {
     model::CoreModel::Outputs outputs;
     model::CoreModel::Answer answer;
@@ -90,7 +90,7 @@ class CoreBench {
 
   explicit CoreBench(const model::CardConfig& config = {}) : core(config) { core.set_steps(&steps); }
 
-  // Every clock goes through here.
+  // Every clock goes through this function.
   void clock(model::CoreModel::Inputs in) {
     if (before_clock) before_clock();
     in.pins = pins;
@@ -109,7 +109,7 @@ class CoreBench {
   void idle(std::uint64_t clocks) {
     for (; clocks != 0; --clocks) clock({});
   }
-  // True when the card took it.
+  // True when the card accepted the write.
   bool write(std::uint32_t address, std::uint32_t data) { return access(address, true, data); }
   std::uint32_t read(std::uint32_t address) {
     access(address, false, 0);
@@ -139,7 +139,8 @@ class CoreBench {
     return send(command_words(card_map::Opcode::Feed, piece_class, number++, ticks,
                               {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
   }
-  // A circle of radius r, all of it, from its rightmost point, over `ticks`; 8 r path ticks.
+  // A whole circle of radius r from its rightmost point, in `ticks` feed ticks. It takes 8 r path ticks, or
+  // steps_in_eight(r).
   static std::vector<std::uint32_t> circle_words(std::uint8_t number, std::uint64_t ticks, std::int64_t r,
                                                  bool clockwise, bool eight = false) {
     const std::int64_t made = eight ? steps_in_eight(r) : 8 * r;
@@ -157,7 +158,7 @@ class CoreBench {
   bool circle(std::uint64_t ticks, std::int64_t r, bool clockwise = false, bool eight = false) {
     return send(circle_words(number++, ticks, r, clockwise, eight));
   }
-  // Of a circle of radius r.
+  // Steps of a circle of radius r in 8 directions.
   static std::int64_t steps_in_eight(std::int64_t r) {
     return r == 1 ? 6 : 4 * std::llround(std::sqrt(2.0) * static_cast<double>(r));
   }
@@ -166,7 +167,7 @@ class CoreBench {
     return send(command_words(card_map::Opcode::Output, 0, number++, 0, {{"set", set}, {"clear", clear}}));
   }
   bool mark() { return send(command_words(card_map::Opcode::Mark, 0, number++, 0, {})); }
-  // Conditions: {level, input}.
+  // `condition`: bit 5 is the level, bits 4:0 are the input.
   bool probe(unsigned condition) {
     return send(command_words(card_map::Opcode::Probe, 0, number++, 0, {{"condition", condition}}));
   }
@@ -175,7 +176,7 @@ class CoreBench {
     return send(command_words(card_map::Opcode::WaitInput, 0, number++, clocks, {{"condition", condition}}));
   }
   bool end() { return send(command_words(card_map::Opcode::End, 0, number++, 0, {})); }
-  // Until not busy; false when that does not come.
+  // Clocks until the core is not busy; false when it is still busy after `limit` clocks.
   bool finish(std::uint64_t limit) {
     idle(8);
     for (; limit != 0 && (core.outputs().status & 1) != 0; --limit) clock({});
@@ -185,13 +186,13 @@ class CoreBench {
   model::CoreModel core;
   StepRecorder steps;
   std::uint8_t number = 0;
-  std::uint64_t taken = 0;  // feed ticks
-  std::uint32_t pins = 0;   // at the card's inputs
+  std::uint64_t taken = 0;  // feed ticks so far
+  std::uint32_t pins = 0;   // levels of the card's inputs
   std::function<void()> before_clock;
   std::function<void()> after_clock;
-  bool emergency_stop = false;  // level at its pin
+  bool emergency_stop = false;  // level of its pin
   bool logs = false;
-  bool skips = true;  // clocks that change nothing in a block
+  bool skips = true;  // leaves out the clocks that change nothing in a block
   std::vector<Shown> log;
 };
 

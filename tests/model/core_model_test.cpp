@@ -1,4 +1,4 @@
-// The golden core as a whole, by what the page says of it.
+// The golden core as a whole against its documentation.
 #include "trammel/model/core_model.hpp"
 
 #include <gtest/gtest.h>
@@ -76,11 +76,11 @@ TEST(CoreModel, ACircleInEightDirectionsComesBack) {
   EXPECT_EQ(bench.core.outputs().fault, 0U);
   EXPECT_EQ(bench.core.position(0), 0U);
   EXPECT_EQ(bench.core.position(1), 0U);
-  // Each coordinate goes 4 R, whatever the rule; two in one tick are two steps.
+  // Each coordinate travels 4 R in either step rule; a tick that moves both axes counts as two steps.
   EXPECT_EQ(bench.steps.path.size(), 888U);
 }
 
-// A circle of radius 10 in 8 directions with one field as it must not be.
+// A circle of radius 10 in 8 directions with one wrong field.
 std::vector<std::uint32_t> wrong_circle(const char* name, int128 value) {
   std::vector<std::pair<std::string_view, int128>> fields = {{"path_ticks", 56},    {"prescale", kOnePulse / 10},
                                                              {"plane", 1 << 8 | 2}, {"quadrants", 4},
@@ -92,7 +92,7 @@ std::vector<std::uint32_t> wrong_circle(const char* name, int128 value) {
   return command_words(card_map::Opcode::Arc, 3, 0, 560, fields);
 }
 
-// What a field can be told from is refused; where ticks and quadrants do not fit the curve, the arc is not at its end.
+// An error that a single field shows is refused. If ticks and quadrants do not fit the curve, the arc misses its end.
 TEST(CoreModel, MalformedArcsInEightDirections) {
   const auto refused = [](const std::vector<std::uint32_t>& words, const model::CardConfig& config) {
     CoreBench bench(config);
@@ -122,8 +122,8 @@ TEST(CoreModel, MalformedArcsInEightDirections) {
   EXPECT_EQ(fault(wrong_circle("quadrants", 0)), 0U) << "start and end are one: no step";
 }
 
-// A circle at a tick a clock with a path tick in `each` ticks, and a path after it: the clocks of the circle's last
-// path tick and last feed tick, and of the next path's first tick.
+// A circle at one tick per clock, with a path tick every `each` ticks, then a second path. The members are the clocks
+// of the last path tick and the last feed tick of the circle, and of the first tick of the second path.
 struct HandOver {
   std::uint64_t path_tick = 0;
   std::uint64_t tick = 0;
@@ -152,8 +152,8 @@ HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc, bool ei
   return result;
 }
 
-// docs/developer/architecture.md, Sequencers; 29 clocks from where the accumulator is ready, 9 after its last tick, 17
-// in 8 directions.
+// docs/developer/architecture.md, Sequencers: the accumulator is ready 9 clocks after its last path tick, or 17 in 8
+// directions. The first tick of the next path follows 29 clocks later for an arc and 4 clocks later for a line.
 TEST(CoreModel, HandOverAfterAnArc) {
   for (const std::int64_t radius : {1, 5, 20}) {
     for (const std::uint64_t each : {1U, 2U, 3U, 5U, 9U, 10U, 11U, 14U, 20U, 100U}) {
@@ -168,12 +168,12 @@ TEST(CoreModel, HandOverAfterAnArc) {
           << radius << ", " << each;
     }
   }
-  // A path tick in 20 ticks or more is long finished: 37 and 8 clocks are what remains.
+  // With 20 or more ticks per path tick the last path tick has been processed; only 37 or 8 clocks remain.
   EXPECT_EQ(hand_over(5, 100, true).first - hand_over(5, 100, true).tick, 37U);
   EXPECT_EQ(hand_over(5, 100, false).first - hand_over(5, 100, false).tick, 8U);
 }
 
-// An arc in chords at a path tick each clock, in the plane of the first two axes.
+// An arc in chords in the plane of the first two axes; it lasts `ticks` feed ticks.
 std::vector<std::uint32_t> chord_words(std::uint8_t number, const ArcPoints& arc, std::uint64_t ticks) {
   const model::ChordFields fields = prepare_chords(arc);
   const model::ChordRotation::State& state = fields.state;
@@ -191,7 +191,7 @@ std::vector<std::uint32_t> chord_words(std::uint8_t number, const ArcPoints& arc
                         {"closing_y", state.closing_y}});
 }
 
-// From the rightmost point, about 40 pulses long.
+// An arc from the rightmost point, about 40 pulses long.
 ArcPoints short_arc(std::int64_t radius, bool clockwise) {
   ArcPoints arc;
   const double angle = 40.0 / static_cast<double>(radius);
@@ -203,7 +203,7 @@ ArcPoints short_arc(std::int64_t radius, bool clockwise) {
   return arc;
 }
 
-// The path's steps and their path ticks are the arc's, whatever the clocks between the ticks are.
+// The steps of the path and their path ticks are those of the arc, regardless of the clocks between ticks.
 TEST(CoreModel, AChordArcsStepsCarryTheirPathTicks) {
   std::vector<StepRecorder::Path> lists[2];
   const ArcPoints arc = short_arc(90, false);
@@ -228,15 +228,14 @@ TEST(CoreModel, AChordArcsStepsCarryTheirPathTicks) {
   }
 }
 
-// The gaps between ticks: within an arc in chords, and from one path to the next.
+// Clocks between ticks: within an arc in chords, and from one path to the next.
 struct ChordGaps {
-  std::uint64_t longest =
-      0;  // in the second path, from its tenth tick on: the tick source comes back from the stall at the start
-  std::uint64_t start = 0;      // the longest of its first ticks
-  std::uint64_t hand_over = 0;  // from the second path's last tick to the third's first
+  std::uint64_t longest = 0;    // second path, after the ten ticks in which the tick source recovers
+  std::uint64_t start = 0;      // longest among its first ten ticks
+  std::uint64_t hand_over = 0;  // from the last tick of the second path to the first tick of the third
 };
 
-// A line, an arc, and another arc or a line of all axes.
+// A line, an arc, and then another arc or a line of all axes.
 ChordGaps chord_gaps(std::int64_t radius, bool to_arc) {
   model::CardConfig config;
   config.engines |= card_map::engines::kArcGenerator;
@@ -283,7 +282,7 @@ ChordGaps chord_gaps(std::int64_t radius, bool to_arc) {
   return gaps;
 }
 
-// docs/developer/architecture.md, arc_generator: no stall but at the start, and what the hand-over costs.
+// docs/developer/architecture.md, arc_generator: only the start stalls; the hand-over takes the documented clocks.
 TEST(CoreModel, HandOverOfArcsInChords) {
   for (const std::int64_t radius : {10, 40, 5000, 600'000}) {
     const ChordGaps line = chord_gaps(radius, false);

@@ -1,4 +1,4 @@
-// Two cores that take the same orders and are compared: outputs, positions, reported steps and all that follows.
+// Two cores get the same orders. Their outputs, positions, reported steps and visible states must be equal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace trammel::testing {
 
 class Pair {
  public:
-  // What is compared: a core that is clocked with one that jumps, or one that never rests with one that does.
+  // ClockAndRun: one core is clocked, the other one jumps. AllAndResting: one core clocks every block, the other one
+  // leaves out blocks at rest.
   enum class Of { ClockAndRun, AllAndResting };
 
   Pair(Of of, const model::CardConfig& config, std::uint64_t seed)
@@ -25,7 +26,7 @@ class Pair {
   }
 
   std::uint64_t any(std::uint64_t low, std::uint64_t high) { return low + random() % (high - low + 1); }
-  // Any order of size up to 2^bits.
+  // A number of random magnitude, below 2^bits.
   std::uint64_t sized(unsigned bits) {
     const std::uint64_t size = any(0, bits);
     return size == 0 ? 0 : random() >> (64 - size);
@@ -50,7 +51,7 @@ class Pair {
       jumping.idle(clocks);
     waits += 1;
   }
-  // The same as run(), counting the clocks of jumps over which the ratio changed.
+  // The same as wait() with a jump; counts the clocks of those jumps in which the ratio changed.
   void wait_on_ramps(std::uint64_t clocks) {
     clocked.idle(clocks);
     while (clocks != 0) {
@@ -74,7 +75,7 @@ class Pair {
       ASSERT_EQ(clocked.core.position(n), jumping.core.position(n)) << "axis " << n;
     ASSERT_TRUE(clocked.steps.pins == jumping.steps.pins) << "cycle " << clocked.core.cycles();
     ASSERT_TRUE(clocked.steps.path == jumping.steps.path) << "cycle " << clocked.core.cycles();
-    // What was equal once need not be compared again.
+    // Equal records need no second comparison.
     for (CoreBench* bench : {&clocked, &jumping}) {
       steps += bench->steps.pins.size();
       bench->steps.pins.clear();
@@ -83,7 +84,7 @@ class Pair {
       bench->log.clear();
     }
   }
-  // Waits of all lengths, that the ends of jumps fall everywhere.
+  // Waits of many lengths, so that the jumps end at all kinds of clocks.
   void wait_in_pieces(std::uint64_t clocks, std::uint64_t longest) {
     while (clocks != 0 && !::testing::Test::HasFatalFailure()) {
       const std::uint64_t piece = std::min(clocks, one_in(4) ? any(1, longest) : any(1, 90));
@@ -101,7 +102,7 @@ class Pair {
   std::uint64_t steps = 0;
   std::uint64_t chord_arcs = 0;
   std::uint64_t on_ramps = 0;
-  std::uint64_t one_by_one = 0;  // clocks compared, on both
+  std::uint64_t one_by_one = 0;  // clocks compared one by one, on both cores
 };
 
 }  // namespace trammel::testing

@@ -1,4 +1,4 @@
-// The golden model of the deviation accumulator against the source papers' tables and the circle itself.
+// The golden model of the deviation accumulator against the tables of the source papers and the circle itself.
 #include "trammel/model/deviation_accumulator.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ DeviationPath::Word aligned(int128 value) { return static_cast<DeviationPath::Wo
 
 int128 value_of(DeviationPath::Word word) { return static_cast<int128>(word) >> DeviationPath::kAlign; }
 
-// F = x^2 + y^2 - n about a whole-pulse centre.
+// F = x^2 + y^2 - n around a centre in whole pulses.
 State circle(std::int32_t x, std::int32_t y, std::int64_t n, std::int32_t end_x, std::int32_t end_y,
              std::uint16_t quadrants, bool clockwise) {
   State state;
@@ -38,7 +38,8 @@ State circle(std::int32_t x, std::int32_t y, std::int64_t n, std::int32_t end_x,
   return state;
 }
 
-// STEER's line as a conic without second difference. STEER steps x when F > 0, the table when F >= 0: one less.
+// The line of STEER as a conic without second differences. STEER steps in x when F > 0, the table when F >= 0;
+// therefore F starts one lower here.
 State line(std::int32_t dx, std::int32_t dy) {
   State state;
   state.deviation = aligned(std::abs(dx) - std::abs(dy) - 1);
@@ -71,7 +72,7 @@ class DeviationRig {
     while (!block.outputs().ready) block.clock({});
   }
 
-  // One path tick, up to the next ready; true when it made a step, which has moved x and y.
+  // One path tick, until the block is ready again. Updates x and y; true when it made a step.
   bool tick() {
     Inputs in;
     in.tick = true;
@@ -126,7 +127,7 @@ TEST(DeviationAccumulator, MakesGoldbergsLine) {
   EXPECT_FALSE(rig.tick());
 }
 
-// Every line that moves both axes: STEER's own loop beside it, with F > 0 a step in x.
+// Every line that moves both axes, against the loop of STEER: a step in x when F > 0.
 TEST(DeviationAccumulator, MakesSteersLinesStepByStep) {
   for (int dx = -24; dx <= 24; ++dx) {
     for (int dy = -24; dy <= 24; ++dy) {
@@ -152,7 +153,7 @@ struct CircleRow {
   int x, y, f, dx, dy;
 };
 
-// Goldberg & Goldberg, Table 3: r = 25 from (25,0), D = 0. The last row prints x = 13; F = 23 fits (18,18) only.
+// Goldberg & Goldberg, Table 3: r = 25 from (25,0), D = 0. Its last row prints x = 13, but F = 23 fits only (18,18).
 constexpr std::array<CircleRow, 26> kTable3 = {{
     {25, 0, 0, 50, 0},    {24, 0, -49, 48, 0},   {24, 1, -48, 48, 2},   {24, 2, -45, 48, 4},   {24, 3, -40, 48, 6},
     {24, 4, -33, 48, 8},  {24, 5, -24, 48, 10},  {24, 6, -13, 48, 12},  {24, 7, 0, 48, 14},    {23, 7, -47, 46, 14},
@@ -182,7 +183,7 @@ TEST(DeviationAccumulator, MakesGoldbergsCircle) {
 
 struct Turn {
   int steps;
-  double lowest;  // of distance from the centre less the radius, after each step
+  double lowest;  // distance from the centre minus the radius, after each step
   double highest;
 };
 
@@ -210,14 +211,14 @@ TEST(DeviationAccumulator, FullCirclesTakeEightRadiiStepsWithinOnePulse) {
     for (const bool clockwise : {false, true}) {
       const Turn turn = full_turn(r, clockwise, r, 0);
       ASSERT_EQ(turn.steps, 8 * r) << "r = " << r << " clockwise " << clockwise;
-      // Exactly -1 is reached: the table's first step from (r, 0) is the one to (r - 1, 0), as in Table 3.
+      // The minimum is exactly -1: the first step of the table from (r, 0) leads to (r - 1, 0), as in Table 3.
       ASSERT_GE(turn.lowest, -1.0) << "r = " << r;
       ASSERT_LT(turn.highest, 1.0) << "r = " << r;
     }
   }
 }
 
-// STEER never returns for r = 1 counter-clockwise; the end rule does.
+// STEER never ends for r = 1 counter-clockwise; the end rule of the accumulator does.
 TEST(DeviationAccumulator, SmallestCircleEnds) {
   EXPECT_LE(full_turn(1, false, 1, 0).steps, 8);
   EXPECT_LE(full_turn(1, true, 1, 0).steps, 8);
@@ -229,7 +230,7 @@ TEST(DeviationAccumulator, ClockwiseIsG2WithXRightAndYUp) {
     rig.load(circle(0, 10, 100, 0, -10, 2, clockwise));
     rig.y = 10;
     for (int i = 0; i < 10; ++i) rig.tick();
-    EXPECT_EQ(rig.x > 0, clockwise);  // from the top, clockwise goes right
+    EXPECT_EQ(rig.x > 0, clockwise);  // clockwise from the top leads to the right
   }
 }
 

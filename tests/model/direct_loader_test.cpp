@@ -1,5 +1,5 @@
-// The direct loader's model against what the reference pages say of START: what it reads, what it loads, every check
-// and their order, and the clocks in closed form.
+// The model of the direct loader against the description of START in the reference: what it reads, what it loads, every
+// check and their order, and the clocks in closed form.
 #include "trammel/model/direct_loader.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ struct Move {
   std::uint64_t length = 1;
 };
 
-// The registers in front of the loader: data two clocks after the address.
+// The registers that the loader reads; data comes two clocks after the address.
 class Bench {
  public:
   explicit Bench(unsigned axes) : loader_(axes) {}
@@ -146,7 +146,7 @@ TEST(DirectLoader, RandomMoves) {
     bool bad = move.length == 0;
     const auto mask = static_cast<std::uint8_t>(random() % 255 + 1);
     for (unsigned n = 0; n < 8; ++n) {
-      // About 2^40 often: the limit itself, and a high word with a low word of 0.
+      // Values around 2^40 are frequent: the limit itself, and a high word with a low word of 0.
       const std::uint64_t near = kMaxFrequency + random() % 3 - 1;
       move.frequency[n] = random() % 8 == 0 ? 0 : random() % 4 == 0 ? near : random() % (kMaxFrequency + 1);
       move.count[n] = random() % 4 == 0 ? 0 : static_cast<std::uint32_t>(random());
@@ -178,7 +178,7 @@ TEST(DirectLoader, ChecksOfTheMask) {
   }
 }
 
-// Every mixture of things wrong: the first in the page's order is told.
+// Every combination of errors: the answer names the first one in the documented order.
 TEST(DirectLoader, TheOrderOfItsChecks) {
   for (unsigned wrong = 0; wrong < 16; ++wrong) {
     Bench bench(4);
@@ -207,7 +207,7 @@ TEST(DirectLoader, LooksAtTheCardInTheSeventhClock) {
   }
 }
 
-// A cause that comes in the meantime must not leave a move that would begin when FAULT is cleared.
+// A fault during START must not leave a move that begins when FAULT is cleared.
 TEST(DirectLoader, AFaultInTheMeantimeRefusesTheMove) {
   const unsigned answer = 33 + 16;
   for (unsigned clock = 8; clock < answer; ++clock) {
@@ -220,7 +220,7 @@ TEST(DirectLoader, AFaultInTheMeantimeRefusesTheMove) {
   }
 }
 
-// A reset in any clock of a START: neither an answer nor a move comes after it.
+// A reset in any clock of a START: neither an answer nor a move follows.
 TEST(DirectLoader, AResetLeavesNothing) {
   for (unsigned clock = 0; clock < 60; ++clock) {
     Bench bench(4);

@@ -1,5 +1,5 @@
-// Enable and brake of the drives, charge pump and health, over the core's port and pins: what the page
-// (docs/reference/behaviour.md) says.
+// Enable and brake of the drives, charge pump and health, over the core's port and pins, against
+// docs/reference/behaviour.md.
 #include "trammel/model/drive_enable.hpp"
 
 #include <gtest/gtest.h>
@@ -26,11 +26,11 @@ constexpr std::uint32_t kHealthy = 8;
 CardConfig with_enables() {
   CardConfig config;
   config.engines = RegisterFile::kDefaultEngines | card_map::engines::kEmergencyStop | card_map::engines::kEnables;
-  config.output_idle = kBrake;  // its brake is set with a high level
+  config.output_idle = kBrake;  // a high level sets the brake
   return config;
 }
 
-// Axes 0 and 1 have drives that are enabled, and a brake.
+// Axes 0 and 1 have drives with an enable and a brake.
 class Drives {
  public:
   explicit Drives(std::uint32_t idle = 0) : bench(with_enables()) {
@@ -53,7 +53,7 @@ class Drives {
     bench.line(ticks, {kOnePulse / 4, -kOnePulse / 4});
   }
   void run(std::uint64_t clocks) { skip::run(bench.core, clocks, {0, bench.emergency_stop}); }
-  // Clocks until the condition holds.
+  // Clocks until the condition holds, at most `limit`.
   template <class Condition>
   std::uint64_t until(const Condition& condition, std::uint64_t limit = 100'000) {
     std::uint64_t clocks = 0;
@@ -132,7 +132,7 @@ TEST(DriveEnable, TheHostsOrderEnablesAndKeepsEnabled) {
   card.bench.write(reg::kEnable, 0);
   card.run(20 * kUnit);
   EXPECT_FALSE(card.enabled());
-  // Motion waits for the order, if it is to.
+  // With the bit `manual`, motion waits for the host to enable the drives.
   card.bench.write(reg::kEnable, field::kEnableManual);
   card.line(100);
   card.run(kIdleUnit);

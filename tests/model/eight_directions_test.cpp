@@ -1,6 +1,5 @@
-// The accumulator's 8-direction rule against closed forms: distances to the true curve, the least deviation among the
-// candidates, numbers of steps, exact ends. Every full turn also goes through the block, clock by clock, where it is
-// short.
+// The 8-direction rule of the accumulator against closed forms: distances to the true curve, the least deviation among
+// the candidates, numbers of steps, exact ends. Short full turns also run through the block, clock by clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +18,7 @@ using Step = DeviationPath::Step;
 
 DeviationPath::Word aligned_8(int128 value) { return static_cast<DeviationPath::Word>(value) << DeviationPath::kAlign; }
 
-// F = weight_x x^2 + weight_y y^2 - n about a whole pulse; in 64 bits up to semi-axes of some thousand.
+// F = weight_x x^2 + weight_y y^2 - n around a whole pulse; 64 bits suffice for semi-axes of some thousands.
 struct Curve {
   std::int64_t weight_x;
   std::int64_t weight_y;
@@ -31,7 +30,7 @@ struct Curve {
 Curve circle(std::int64_t n) { return {1, 1, n}; }
 Curve ellipse(std::int64_t a, std::int64_t b) { return {b * b, a * a, a * a * b * b}; }
 
-// A whole turn, or a part of it, of whole quadrants and what is left.
+// A whole turn or a part of it: whole quadrants and the rest.
 struct Walk {
   Walk(const Curve& along, std::int64_t sx, std::int64_t sy, std::int64_t ex, std::int64_t ey, unsigned quadrants,
        bool clockwise)
@@ -49,7 +48,7 @@ struct Walk {
     path.begin();
   }
 
-  // Not at the end yet, and not as many steps as no walk can take.
+  // False at the end, or after more steps than any walk can take.
   bool goes_on(std::int64_t most) const { return !path.at_end() && steps < most; }
   Step step() {
     const Step made = path.step();
@@ -74,7 +73,7 @@ double distance(std::int64_t x, std::int64_t y) {
   return std::sqrt(static_cast<double>(x) * static_cast<double>(x) + static_cast<double>(y) * static_cast<double>(y));
 }
 
-// From the first point to the last, which is the first again.
+// Full turns from the rightmost point.
 TEST(EightDirections, IntegerCirclesStayWithinHalfAPulse) {
   double worst = 0;
   for (std::int64_t r = 1; r <= 500; ++r) {
@@ -87,7 +86,7 @@ TEST(EightDirections, IntegerCirclesStayWithinHalfAPulse) {
         worst = std::max(worst, error);
       }
       ASSERT_TRUE(walk.path.at_end() && walk.x == r && walk.y == 0) << "r " << r;
-      // Steps along the longer way in each octant: the octants meet at R / sqrt(2).
+      // In each octant one step per pulse of the longer coordinate; the octants meet at R / sqrt(2).
       const auto octants = static_cast<std::int64_t>(std::lround(std::sqrt(2.0) * static_cast<double>(r)));
       ASSERT_EQ(walk.steps, r == 1 ? 6 : 4 * octants) << "r " << r;
     }
@@ -96,7 +95,7 @@ TEST(EightDirections, IntegerCirclesStayWithinHalfAPulse) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-// Through any lattice point: radii that are no whole numbers.
+// Circles through any lattice point; most radii are not whole numbers.
 TEST(EightDirections, CirclesThroughLatticePointsStayNear) {
   double worst = 0;
   double worst_large = 0;
@@ -120,8 +119,7 @@ TEST(EightDirections, CirclesThroughLatticePointsStayNear) {
   EXPECT_LE(worst_large, 0.512);
 }
 
-// By brute force: the nearest of points so close together on the ellipse that the chords between them stray less than
-// 1e-6 of a pulse from it, and nearer still by the quotient of the two nearest.
+// Distance to the ellipse by subdivision: each of 12 rounds keeps the two parts around the nearest of 13 points.
 double distance_to_ellipse(double a, double b, double x, double y) {
   x = std::abs(x);
   y = std::abs(y);
@@ -169,9 +167,10 @@ TEST(EightDirections, EllipsesStayNear) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-// The three candidates, each from the curve's formula: what is taken has the least |F|, and outside the curve the axis
-// that moves away from its zero never steps alone where its gradient is the larger one. Where the inward axis is within
-// half a pulse of its zero, F with both steps does not lie between those with one, and the outward axis may be nearer.
+// Computes the three candidates from the formula of the curve. The step taken has the least |F|. Outside the curve, the
+// outward axis (whose coordinate moves away from 0) never steps alone when its gradient is the larger one. If the
+// inward coordinate is within half a pulse of 0, F with both steps does not lie between those with one step, and the
+// outward axis alone may be nearer.
 void expect_least(Walk& walk, const std::string& what) {
   const Curve& c = walk.curve;
   const std::int64_t x = walk.x;
@@ -200,7 +199,7 @@ void expect_least(Walk& walk, const std::string& what) {
 TEST(EightDirections, TakesTheLeastDeviation) {
   std::int64_t steps = 0;
   const auto judge = [&](Walk walk, std::int64_t most, const std::string& what) {
-    // Four changes of quadrant; what is then left goes straight.
+    // Until the fourth change of quadrant; the rest of the walk is straight.
     while (walk.path.state.quadrants != 0 && walk.goes_on(most)) {
       expect_least(walk, what);
       if (::testing::Test::HasFatalFailure()) return;
@@ -216,7 +215,7 @@ TEST(EightDirections, TakesTheLeastDeviation) {
               "circle from " + std::to_string(sx) + ", " + std::to_string(sy));
       }
     }
-    // Needles too.
+    // Includes very thin ellipses.
     for (const std::int64_t a : {1, 2, 3, 5, 8, 20, 33, 100, 1000, 3000}) {
       for (const std::int64_t b : {1, 2, 3, 5, 8, 20, 33, 100, 1000, 3000}) {
         const std::string what = "ellipse " + std::to_string(a) + ", " + std::to_string(b);
@@ -228,8 +227,8 @@ TEST(EightDirections, TakesTheLeastDeviation) {
   EXPECT_GT(steps, 1'000'000);
 }
 
-// F = |dx| y - |dy| x for a line to the right and up, F0 = 0: half a pulse along either axis, as many steps as the
-// longer one has pulses.
+// F = |dx| y - |dy| x for a line to the right and up, with F0 = 0: at most half a pulse along either axis, and as many
+// steps as the longer axis has pulses.
 TEST(EightDirections, LinesStayWithinHalfAPulse) {
   for (int dx = -40; dx <= 40; ++dx) {
     for (int dy = -40; dy <= 40; ++dy) {
@@ -250,7 +249,7 @@ TEST(EightDirections, LinesStayWithinHalfAPulse) {
         const Step made = path.step();
         if (made.in_x) x += made.negative_x ? -1 : 1;
         if (made.in_y) y += made.negative_y ? -1 : 1;
-        // Along the shorter axis, from the line.
+        // Distance from the line along the shorter axis.
         ASSERT_LE(2 * std::abs(dx * y - dy * x), longest) << dx << ", " << dy << " step " << i;
       }
       ASSERT_TRUE(path.at_end() && x == dx && y == dy) << dx << ", " << dy;
@@ -258,7 +257,7 @@ TEST(EightDirections, LinesStayWithinHalfAPulse) {
   }
 }
 
-// The bounds of the card's words: semi-axes of 2^20 (66 bits of F and gradients) in both rules.
+// The largest values of the card: semi-axes of 2^20 (66 bits for F and gradients), in both rules.
 TEST(EightDirections, LargestEllipseComesRound) {
   constexpr std::int64_t kSemiAxis = std::int64_t{1} << 20;
   for (const bool eight : {false, true}) {
@@ -281,9 +280,9 @@ TEST(EightDirections, LargestEllipseComesRound) {
           std::max({largest, value(path.state.deviation), value(path.state.gradient_x), value(path.state.gradient_y)});
     }
     EXPECT_TRUE(path.at_end());
-    // 8 a, or 4 sqrt(2) a.
+    // 8 a steps, or 4 sqrt(2) a in 8 directions.
     EXPECT_EQ(steps, eight ? 4 * std::llround(std::sqrt(2.0) * static_cast<double>(kSemiAxis)) : 8 * kSemiAxis);
-    // With the sign and the two bits that sums of candidates need more, 66.
+    // With the sign and two more bits for the sums of candidates this makes 66 bits.
     EXPECT_GE(largest, int128{1} << 61);
     EXPECT_LT(largest, int128{1} << 63);
   }

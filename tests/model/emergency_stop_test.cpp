@@ -1,5 +1,5 @@
-// The emergency stop and the outputs that are safe at the cause of a stop, over the core's port and pins: what the page
-// (docs/reference/behaviour.md) says.
+// The emergency stop and the outputs that become safe at the cause of a stop, over the core's port and pins, against
+// docs/reference/behaviour.md.
 #include <gtest/gtest.h>
 
 #include "core_bench.hpp"
@@ -24,7 +24,7 @@ CardConfig with_emergency_stop(bool level = true) {
   return config;
 }
 
-// On a line of its first axis, a pulse in 8 clocks, with laser and spindle on.
+// A core on a line of its first axis, one pulse per 8 clocks, with laser and spindle on.
 class Running {
  public:
   explicit Running(const CardConfig& config = with_emergency_stop()) : bench(config) {
@@ -92,7 +92,7 @@ TEST(EmergencyStop, ItIsNotClearedWhilePressedAndClearingMovesNothing) {
   EXPECT_EQ(card.outputs(), kBoth) << "but by a command";
 }
 
-// The registers are filled first: no snapshot is lost in that, and nothing can begin meanwhile.
+// The card first fills its registers: this loses no snapshot, and nothing can begin meanwhile.
 TEST(EmergencyStop, PressedAtPowerUpItIsACauseWhenAccessesAreAnswered) {
   CoreBench bench(with_emergency_stop());
   bench.emergency_stop = true;
@@ -106,7 +106,7 @@ TEST(EmergencyStop, PressedAtPowerUpItIsACauseWhenAccessesAreAnswered) {
   EXPECT_EQ(bench.read(reg::kHoldLimit), card_map::find_register(reg::kHoldLimit).entry->reset);
 }
 
-// Either a clear comes after a press, or the press is a new stop: none is lost.
+// A clear after the press clears it; otherwise the press is a new stop. No press is lost.
 TEST(EmergencyStop, APressBesideAClearCountsAtEveryClock) {
   for (unsigned at = 0; at < 12; ++at) {
     Running card;
@@ -125,7 +125,7 @@ TEST(EmergencyStop, APressBesideAClearCountsAtEveryClock) {
       if (card.bench.core.answer().ack) cleared_at = i;
     }
     EXPECT_LT(cleared_at, 20U);
-    // The clear takes effect in the clock after its answer is seen, and looks at the pin as it was two clocks before.
+    // The clear takes effect one clock after its answer is visible, and uses the pin as it was two clocks before.
     const bool after = at > cleared_at || at + 1 == cleared_at;
     EXPECT_EQ(card.fault() != 0, after) << at << " " << cleared_at;
     EXPECT_EQ(card.bench.core.state().emergency_stop.latched(), after) << at;
@@ -158,7 +158,7 @@ TEST(EmergencyStop, ACardWithoutItHearsNothing) {
 
 TEST(SafeAtTheCause, TheLaserGoesOffWithFaultAndTheSpindleAtRest) {
   Running card;
-  // The step of a watchdog's ramp: a cause of another kind.
+  // A watchdog with a ramped stop: another kind of cause.
   card.bench.write(reg::kWatchdog, 1);
   unsigned laser = 0;
   unsigned spindle = 0;
@@ -194,7 +194,7 @@ TEST(SafeAtTheCause, AnOutputOnTheRampDoesNotSwitchItOn) {
   card.bench.number = 0;
   card.bench.output(0, kBoth);
   card.bench.line(1130, {kOnePulse / 4});
-  card.bench.output(kBoth, 0);  // on the ramp
+  card.bench.output(kBoth, 0);  // executed during the ramp
   card.bench.line(100'000, {kOnePulse / 4});
   card.bench.feed(101'130, kHalf);
   card.bench.idle(2000);

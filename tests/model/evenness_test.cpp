@@ -1,4 +1,4 @@
-// When steps come: the golden card's, at a constant rate of ticks, against the moments at which the commanded motion
+// Times of steps: those of the golden card at a constant tick rate, against the times at which the commanded motion
 // crosses half pulses. These are computed from the fields of the commands alone.
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace reg = card_map::reg;
 using model::ArcPoints;
 
 constexpr unsigned kAxes = 4;
-constexpr unsigned kMarker = 3;  // the axis that steps with every tick: when that tick was
+constexpr unsigned kMarker = 3;  // the axis that steps with every tick and so shows its time
 constexpr std::uint64_t kTickClocks = 20;
 
 class EvennessBench : public CoreBench {
@@ -33,7 +33,7 @@ class EvennessBench : public CoreBench {
     }
   }
 
-  // The path that was sent, at a tick in kTickClocks; the clock of its first marked tick.
+  // Plays the path that was sent, at one tick per kTickClocks; returns the clock of its first marked tick.
   std::uint64_t play(std::uint64_t ticks) {
     steps.path.clear();
     EXPECT_TRUE(feed(ticks, static_cast<std::uint64_t>(std::ldexp(1.0L, 64) / kTickClocks)));
@@ -64,8 +64,8 @@ struct Lateness {
   }
 };
 
-// The j-th step of p pulses in N ticks is due after (j - 1/2) N / p ticks. Gives also how far its intervals are from N
-// / p, as a share of it.
+// The j-th step of p pulses in N ticks is due after (j - 1/2) N / p ticks. Returns the largest relative deviation of an
+// interval from N / p.
 double judge_line(EvennessBench& bench, std::uint64_t ticks, const std::array<std::int64_t, 3>& pulses,
                   Lateness& lateness) {
   std::vector<std::int64_t> increments;
@@ -97,7 +97,7 @@ TEST(Evenness, StepsOfALineComeWithinATickAndAClock) {
   double uneven = 0;
   for (int i = 0; i < 100; ++i) {
     const std::uint64_t ticks = 200 + random() % 3000;
-    // Every other line with 128 ticks a pulse or more.
+    // Every other line has at least 128 ticks per pulse.
     const std::uint64_t most = ticks / (i % 2 == 0 ? 128 : 2);
     std::array<std::int64_t, 3> pulses{};
     for (std::int64_t& p : pulses)
@@ -114,8 +114,8 @@ TEST(Evenness, StepsOfALineComeWithinATickAndAClock) {
             << " clocks a tick; intervals at 128 ticks a pulse and more off by " << uneven << " at most\n";
 }
 
-// Where an arc's fields put one of its axes after so many path ticks, whole or not: presets for the first tick, then
-// increments that change at odd half chords for y, at even ones for x.
+// Position of an axis after a number of path ticks, not necessarily whole, from the fields of an arc: presets for the
+// first tick, then increments that change at odd half chords for Y and at even ones for X.
 class Sum {
  public:
   explicit Sum(const model::ChordFields& fields) : state_(fields.state) {
@@ -154,8 +154,8 @@ class Sum {
   std::array<std::vector<double>, 2> at_;
 };
 
-// The path tick, looked for backwards from `ticks`, at which the sum last crossed a level in a direction; nothing
-// within three path ticks.
+// The latest path tick before `ticks` at which the sum crossed the level in this direction; none if it is more than
+// three path ticks back.
 std::optional<double> crossing(const Sum& sum, unsigned axis, double level, int direction, double ticks) {
   for (double end = ticks; end > ticks - 3;) {
     const double begin = std::ceil(end) - 1;
@@ -167,10 +167,10 @@ std::optional<double> crossing(const Sum& sum, unsigned axis, double level, int 
   return std::nullopt;
 }
 
-// Ticks of an arc that are no path ticks included: the prescaler gives a path tick at feed ticks (i - 1/2) / ratio.
+// Includes feed ticks that are not path ticks: the prescaler makes path tick i at feed tick (i - 1/2) / ratio.
 void judge_arc(EvennessBench& bench, const ArcPoints& points, double ratio, Lateness& lateness) {
   driver::ArcChordCommand arc = model::prepare_command(points);
-  arc.increment[kMarker] = kOnePulse;  // a step a path tick
+  arc.increment[kMarker] = kOnePulse;  // a step per path tick
   arc.mask |= 1U << kMarker;
   arc.ticks = static_cast<std::uint64_t>(static_cast<double>(arc.path_ticks) / ratio);
   arc.prescale = driver::rounded_share(arc.path_ticks, arc.ticks);
@@ -187,7 +187,7 @@ void judge_arc(EvennessBench& bench, const ArcPoints& points, double ratio, Late
     const double level = static_cast<double>(made[axis]) + 0.5 * direction;
     made[axis] += direction;
     const double at = static_cast<double>(cycle) - first + kTickClocks;
-    // A path tick may come half of one before its share of feed ticks has: the prescaler rounds.
+    // The prescaler rounds, so a path tick may come up to half a path tick early.
     const auto due = crossing(sum, axis, level, direction, at / kTickClocks * share + 0.5 + 1e-6);
     ASSERT_TRUE(due) << "axis " << axis << " pulse " << made[axis];
     lateness.look((at - *due / share * kTickClocks) / (kTickClocks * (1 + 1 / share) + 1));

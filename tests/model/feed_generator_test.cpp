@@ -79,7 +79,7 @@ TEST(FeedGenerator, ClearDropsPhaseAndTicksInFlight) {
   }
 }
 
-// Up to the 31st enabled clock the piece's own acceleration and jerk may come; the last piece's never count.
+// The piece's own acceleration and jerk may arrive up to the 31st enabled clock; those of the last piece never apply.
 TEST(FeedGenerator, AccelerationAndJerkComeAfterTheSwap) {
   Random random(9);
   for (int i = 0; i < 200; ++i) {
@@ -139,7 +139,7 @@ TEST(FeedGenerator, ClampsAtTheFloorAndAtOne) {
   EXPECT_GE(ticks_in(feed, 320), 319U);
 }
 
-// A start below its own floor runs for one update as given, then at the floor.
+// A piece that starts below its floor runs for one update at the given rate, then at the floor.
 TEST(FeedGenerator, TheFirstSlopeIsNotClamped) {
   FeedGenerator feed;
   load_and_swap(feed, {std::uint64_t{7} << 32, 0, 0, 0x8000'0000});
@@ -150,13 +150,13 @@ TEST(FeedGenerator, TheFirstSlopeIsNotClamped) {
   EXPECT_EQ(feed.state().slope, std::uint64_t{0x8000'0000} << 16);
 }
 
-// advance() against clock() for clock: the same carries, up to the one wanted, and the same state after it.
+// advance() against clock(), clock by clock: the same carries up to the wanted one, and then the same state.
 TEST(FeedGenerator, AdvanceIsExact) {
   Random random(4);
   for (int i = 0; i < 4000; ++i) {
     FeedGenerator clocked;
     Piece p = random.piece();
-    if (random.word() % 3 == 0) p.rate |= std::uint64_t{0xFFF} << 52;  // near one, where the clamp is
+    if (random.word() % 3 == 0) p.rate |= std::uint64_t{0xFFF} << 52;  // close to 1, where the rate is clamped
     load_and_swap(clocked, p);
     ticks_in(clocked, random.word() % 150);
     FeedGenerator jumping = clocked;
@@ -178,7 +178,7 @@ TEST(FeedGenerator, AdvanceIsExact) {
       ASSERT_EQ(jumping.state().slope, clocked.state().slope);
       drain(jumping);
       drain(clocked);
-      // The outputs and everything that is not visible: the next updates fall on the same clocks.
+      // Compares the outputs and, through the clocks of the next updates, the hidden state.
       for (std::uint64_t c = random.word() % 70; c > 0; --c) {
         ASSERT_EQ(enabled_clock(jumping), enabled_clock(clocked));
         ASSERT_EQ(jumping.outputs().rate, clocked.outputs().rate);

@@ -1,4 +1,4 @@
-// Random paths of each engine for the core, and how many path ticks their feed ticks make.
+// Random paths of each engine for the core, and the number of path ticks that their feed ticks make.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace trammel::testing {
 
 inline constexpr std::uint64_t kEvery16 = std::uint64_t{1} << 60;  // rate: a tick in 16 clocks
 
-// A path over so many feed ticks.
+// A path that lasts `ticks` feed ticks.
 struct Path {
   std::uint64_t ticks = 0;
   std::uint64_t prescale = 0;  // 2^-40 path ticks per feed tick

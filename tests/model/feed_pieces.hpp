@@ -1,4 +1,4 @@
-// Pieces for the feed generator's model, their closed form, and what clocks them.
+// Pieces for the model of the feed generator, their closed form, and functions that clock them.
 #pragma once
 
 #include <cmath>
@@ -40,7 +40,7 @@ inline void swap(FeedGenerator& feed, const Piece& p) {
   feed.clock(in);
 }
 
-// Acceleration and jerk come after the swap.
+// Acceleration and jerk are loaded after the swap.
 inline void load_and_swap(FeedGenerator& feed, const Piece& p) {
   swap(feed, p);
   feed.clock({});
@@ -56,7 +56,7 @@ inline bool enabled_clock(FeedGenerator& feed) {
   return feed.outputs().tick;
 }
 
-// Lets the ticks in flight come out.
+// Clocks until no tick is in flight; returns the ticks that came out.
 inline std::uint64_t drain(FeedGenerator& feed) {
   std::uint64_t ticks = 0;
   for (std::uint32_t i = 1; i < FeedGenerator::kLatency; ++i) {
@@ -67,14 +67,14 @@ inline std::uint64_t drain(FeedGenerator& feed) {
   return ticks;
 }
 
-// Ticks of `clocks` enabled clocks, from quiet to quiet.
+// Number of ticks in `clocks` enabled clocks; no tick is in flight before and after.
 inline std::uint64_t ticks_in(FeedGenerator& feed, std::uint64_t clocks) {
   std::uint64_t ticks = 0;
   for (std::uint64_t i = 0; i < clocks; ++i) ticks += enabled_clock(feed);
   return ticks + drain(feed);
 }
 
-// Goes to the n-th tick; returns the enabled clocks it took, 0 if it does not come within `limit`.
+// Runs to the n-th tick. Returns the enabled clocks that this took, or 0 if the tick does not come within `limit`.
 inline std::uint64_t clocks_to_tick(FeedGenerator& feed, std::uint64_t n, std::uint64_t limit) {
   const skip::FeedAhead::Advanced gone = skip::FeedAhead(feed).advance(limit, n);
   drain(feed);
@@ -104,7 +104,7 @@ class Random {
     const Real u = static_cast<Real>(engine_() >> 11) / 9007199254740992.0L;
     return low * std::exp(std::log(high / low) * u);
   }
-  // Magnitudes of every order of size; kept so small that R stays within +-2 for 2,000 updates.
+  // Magnitudes of every order, small enough that R stays within +-2 for 2,000 updates.
   Piece piece() {
     Piece p{engine_() >> (engine_() % 64)};
     p.acceleration = static_cast<std::int64_t>(engine_() >> (12 + engine_() % 50));

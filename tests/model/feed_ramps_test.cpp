@@ -1,4 +1,4 @@
-// Ramps, stops and extremes of the feed generator's model: when they end, and at which speed.
+// Ramps, stops and extremes of the model of the feed generator: the time and the speed at which they end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace trammel::model {
 namespace {
 
-// Ramps from 0: rate v = a t, so the first update's mean is a / 2 an update; n ticks end at v with a = v^2 / (2 n).
+// Ramps from 0: rate v = a t, with a per update. The mean of the first update is a / 2; n ticks end at v = sqrt(2 n a).
 TEST(FeedGenerator, ARampEndsAtItsSpeed) {
   Random random(5);
   int ramps = 0;
@@ -31,8 +31,8 @@ TEST(FeedGenerator, ARampEndsAtItsSpeed) {
 }
 
 // Jerk from rest: v = j t^2 / 2, n = j t^3 / 6, so j = 2 v^3 / (9 n^2). In updates: the mean of update i is
-// j (i^2 + i + 1/3) / 2, so it starts at j / 6 with a first difference of j. Half an update is 1/k of the end speed
-// after k updates, twice a trapezoid's: 0.05 % from 2,000 updates on.
+// j (i^2 + i + 1/3) / 2; it starts at j / 6 with a first difference of j. After k updates, half an update changes the
+// speed by 1/k of the end speed, twice as much as on a trapezoid: 0.05 % from 2,000 updates on.
 TEST(FeedGenerator, AJerkPieceEndsAtItsSpeed) {
   Random random(6);
   int pieces = 0;
@@ -52,8 +52,8 @@ TEST(FeedGenerator, AJerkPieceEndsAtItsSpeed) {
   }
 }
 
-// A stop planned to end at sqrt(a * 1 tick), which is also its floor, ends; a tick at the end speed takes
-// sqrt(1 tick / a), the unit in which its lateness is measured.
+// A stop planned to end at sqrt(a * 1 tick), which is also its floor, does end. A tick at the end speed takes
+// sqrt(1 tick / a), which is the unit of the permitted lateness.
 TEST(FeedGenerator, AStopAlwaysEnds) {
   Random random(7);
   int stops = 0;
@@ -79,7 +79,7 @@ TEST(FeedGenerator, AStopAlwaysEnds) {
   }
 }
 
-// Without a floor worth the name the same stop hangs: the rule is needed.
+// With a floor of almost 0 the same stop does not end: the rule of the floor is necessary.
 TEST(FeedGenerator, AStopToZeroWithoutItsFloorIsLate) {
   const Real speed = 0.01L;
   const Real ticks = 1000;
@@ -89,7 +89,7 @@ TEST(FeedGenerator, AStopToZeroWithoutItsFloorIsLate) {
   EXPECT_EQ(clocks_to_tick(feed, 1000, 4 * 200'000), 0U);
 }
 
-// The clocks to the n-th tick by the definition alone: sums of exact slopes, an update at a time.
+// Clocks to the n-th tick, computed from the definition alone: sums of exact slopes, one update at a time.
 std::uint64_t ideal_clocks(const Piece& p, std::uint64_t n) {
   constexpr int128 kTwo = static_cast<int128>(2) << 64;
   const int128 target = static_cast<int128>(n) << 48;
@@ -111,8 +111,8 @@ std::uint64_t ideal_clocks(const Piece& p, std::uint64_t n) {
   }
 }
 
-// Whatever acceleration and jerk are, a piece of n ticks is over after n ticks at its floor and one update, to the
-// clock when its definition says.
+// With any acceleration and jerk, a piece of n ticks ends at the latest after n ticks at its floor plus one update, and
+// exactly in the clock of its definition.
 TEST(FeedGenerator, AFloorEndsEveryPiece) {
   Random random(10);
   int reversing = 0;
@@ -138,14 +138,14 @@ TEST(FeedGenerator, AFloorEndsEveryPiece) {
   EXPECT_GT(beyond, 200);
 }
 
-// The largest sums that the fields can ask for never come round again: clamped once, clamped to the end.
+// The largest sums that the fields allow never wrap: a clamped rate stays clamped.
 TEST(FeedGenerator, NoAccumulatorOverflows) {
   constexpr std::int64_t kMax = (std::int64_t{1} << 62) - 1 + (std::int64_t{1} << 62);
   for (const std::int64_t acceleration : {kMax, -kMax - 1, std::int64_t{0}}) {
     for (const std::int64_t jerk : {kMax, -kMax - 1}) {
       FeedGenerator feed;
       load_and_swap(feed, {~std::uint64_t{0} >> 1, acceleration, jerk, 0x100});
-      ticks_in(feed, 8 * FeedGenerator::kUpdateClocks);  // 0.5 more an update each update
+      ticks_in(feed, 8 * FeedGenerator::kUpdateClocks);  // the rate changes by 0.5 more in each update
       const std::uint64_t expected = jerk > 0 ? (std::uint64_t{1} << 48) - 1 : std::uint64_t{0x100} << 16;
       for (int update = 0; update < 200; ++update) {
         ASSERT_EQ(feed.state().slope, expected) << acceleration << " " << jerk << " update " << update;
@@ -155,9 +155,9 @@ TEST(FeedGenerator, NoAccumulatorOverflows) {
   }
 }
 
-// Ramps of k updates, k from 50 on: the rate is the mean of its update, so it ends within half an update's change of
-// the speed (of it: 1/(2k) on a trapezoid's ramp, 1/k where jerk begins at rest), and since the ticks of whole updates
-// are exact, the n-th tick comes within a clock and what half an update's bend makes, 8/k clocks.
+// Ramps of k updates, k >= 50. The rate is the mean of its update, so the ramp ends within half an update's change of
+// the speed: relative to the speed, 1/(2k) for a trapezoid and 1/k for jerk from rest. The ticks of whole updates are
+// exact, so the n-th tick comes within one clock plus the curvature of half an update, 8/k clocks.
 TEST(FeedGenerator, ErrorsOfShortRamps) {
   Random random(11);
   int ramps = 0;
@@ -166,14 +166,14 @@ TEST(FeedGenerator, ErrorsOfShortRamps) {
     const Real clocks = kUpdate * updates;
     const Real speed = random.log_uniform(1e-3L, 0.95L);
     const int kind = ramps % 3;
-    // A trapezoid's ramp; jerk up from rest; jerk down from half the speed to it.
+    // A trapezoid's ramp; rising jerk from rest; falling jerk from half the speed to the full speed.
     const Real ticks = std::round(speed * clocks * (kind == 0 ? 1 / 2.0L : kind == 1 ? 1 / 3.0L : 5 / 6.0L));
     if (ticks < 20 || ticks > 50'000) continue;
     ++ramps;
-    const Real time = ticks / speed * (kind == 0 ? 2 : kind == 1 ? 3 : 6 / 5.0L);  // fitted to the whole ticks
+    const Real time = ticks / speed * (kind == 0 ? 2 : kind == 1 ? 3 : 6 / 5.0L);  // fitted to whole ticks
     const Real t = time / kUpdate;                                                 // updates
     Piece p{};
-    Real bend = 0;  // change of the rate in the last update, of the speed
+    Real bend = 0;  // change of the rate in the last update, relative to the speed
     if (kind == 0) {
       p = {rounded(speed / t / 2), rounded_signed(speed / t), 0, 1};
       bend = 1 / t;
@@ -184,7 +184,7 @@ TEST(FeedGenerator, ErrorsOfShortRamps) {
     } else {
       const Real jerk = speed / (t * t);  // v = s/2 + j t T - j t^2 / 2, whose mean in update i is as below
       p = {rounded(speed / 2 + jerk * t / 2 - jerk / 6), rounded_signed(jerk * t - jerk), rounded_signed(-jerk), 1};
-      bend = 1 / t;  // at its beginning
+      bend = 1 / t;  // in the first update
     }
     FeedGenerator feed;
     load_and_swap(feed, p);
@@ -198,7 +198,7 @@ TEST(FeedGenerator, ErrorsOfShortRamps) {
   }
 }
 
-// Pieces that each reload their rate: the error at an end never grows along the chain.
+// Each piece reloads its rate, so the error at its end does not accumulate along the chain.
 TEST(FeedGenerator, AChainOfRampsKeepsItsRate) {
   Random random(8);
   FeedGenerator feed;
@@ -210,7 +210,7 @@ TEST(FeedGenerator, AChainOfRampsKeepsItsRate) {
     const Piece p{rounded(from + acceleration / 2), rounded_signed(acceleration), 0, 0x10'0000};
     load_and_swap(feed, p);
     ASSERT_NE(clocks_to_tick(feed, static_cast<std::uint64_t>(ticks), 10'000'000), 0U);
-    // Up to one update's change, and the phase it came with: a tick more or less at this acceleration.
+    // Up to one update's change, plus one tick more or less at this acceleration because of the initial phase.
     const Real tolerance = std::fabs(acceleration) * 1.5L + std::fabs(acceleration) / kUpdate / std::min(from, to);
     ASSERT_NEAR(static_cast<double>(slope_of(feed)), static_cast<double>(to), static_cast<double>(tolerance)) << i;
     from = to;

@@ -1,4 +1,4 @@
-// The fields of a plain struct, one by one: for tests that compare or fill structs whole, so that none is forgotten.
+// Access to each field of a plain struct, for tests that compare or fill whole structs and must not forget a field.
 #pragma once
 
 #include <array>
@@ -32,8 +32,8 @@ constexpr std::size_t kMaxFields = 60;
 template <class T>
 constexpr std::size_t kFields = count_fields<std::remove_const_t<T>, kMaxFields + 1>();
 
-// References to all of them, as a tuple. C++17 can name the fields of a struct only one by one, so there is a case for
-// each number of them.
+// References to all fields, as a tuple. C++17 can name the fields of a struct only one by one, so there is one case for
+// each number of fields.
 // clang-format off
 #define TRAMMEL_FIELDS_1 f1
 #define TRAMMEL_FIELDS_2 TRAMMEL_FIELDS_1, f2

@@ -1,4 +1,4 @@
-// The frame engine's model: its replies are the endpoint's, and come in the clocks that the page says.
+// The model of the frame engine: its replies equal those of the endpoint, in the documented clocks.
 #include "trammel/model/frame_engine.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 using namespace trammel::frames;
 using trammel::model::FrameEngine;
 
-// An inner port that answers 4 clocks after a request with the address, and refuses the last one.
+// An inner port that answers a request after 4 clocks with its address, and refuses the last address.
 class EngineBench {
  public:
   Bytes bring(const Bytes& bytes, unsigned gap = 10) {
@@ -93,7 +93,7 @@ TEST(FrameEngine, RepliesAsTheEndpoint) {
   EXPECT_GT(replies, 400U);
 }
 
-// The page's numbers: END at c.
+// The documented clocks, counted from the END byte at c.
 TEST(FrameEngine, Clocks) {
   EngineBench bench;
   Request r;
@@ -101,7 +101,7 @@ TEST(FrameEngine, Clocks) {
   const std::uint64_t asked = bench.last_byte;
   ASSERT_EQ(bench.requests.size(), kStateWords);
   for (std::size_t i = 0; i < kStateWords; ++i) EXPECT_EQ(bench.requests[i] - asked, 2 + 10 * i);
-  // The last answer at c+46.
+  // The last answer comes at c+46.
   EXPECT_EQ(bench.offers.front() - asked, 46U + 5 + 12);
   for (std::size_t i = 1; i < bench.offers.size(); ++i) EXPECT_EQ(bench.offers[i] - bench.offers[i - 1], 12U);
 
@@ -116,7 +116,7 @@ TEST(FrameEngine, Clocks) {
   EXPECT_EQ(bench.requests[2] - bench.requests[1], 4U + 2);
 }
 
-// Whatever comes while it answers is lost, and a frame that begins meanwhile too; the next one is taken.
+// Bytes that arrive during a reply are lost, including a frame that begins then; the next frame is accepted.
 TEST(FrameEngine, WhatComesWhileItAnswersIsPassedOver) {
   EngineBench bench;
   Request first;
@@ -134,7 +134,7 @@ TEST(FrameEngine, WhatComesWhileItAnswersIsPassedOver) {
   for (const std::uint8_t byte : stream_of(second)) both.push_back(byte);
   EXPECT_EQ(bench.bring(both, 1), due);
   EXPECT_EQ(bench.written, first.data);
-  // The beginning of a frame, of which the rest comes behind the reply: it is none.
+  // The first bytes of this frame arrive during the reply and the rest after it; it is not accepted.
   const Bytes stream = stream_of(second);
   bench.written.clear();
   Bytes begun = stream_of(Request{});
@@ -146,7 +146,7 @@ TEST(FrameEngine, WhatComesWhileItAnswersIsPassedOver) {
   EXPECT_EQ(bench.written, second.data);
 }
 
-// At a port that takes a byte now and then: in whatever clock it comes, no byte is offered from the next one on.
+// The port takes a byte now and then. After a new connection in any clock, no further byte of the reply is offered.
 TEST(FrameEngine, ANewConnectionEndsTheReplyInAnyClock) {
   const Bytes stream = stream_of(Request{});
   unsigned begun = 0;
@@ -197,7 +197,7 @@ TEST(FrameEngine, ANewConnectionDropsTheReply) {
       engine.clock(in);
     }
     EXPECT_EQ(ends, 0U) << when;
-    EXPECT_EQ(writes, when == 1 ? 0U : 1U) << when;  // in the clock of the decision it comes first
+    EXPECT_EQ(writes, when == 1 ? 0U : 1U) << when;  // a restart in the clock of the decision takes precedence
     EXPECT_EQ(engine.session().epoch(), 1);
     EXPECT_EQ(engine.session().last(), when == 1 ? 0 : 1);
     EXPECT_TRUE(engine.listening());

@@ -1,4 +1,4 @@
-// The queue's model against a deque of committed and of pending halfwords.
+// The model of the queue against a deque of committed and one of pending halfwords.
 #include "trammel/model/halfword_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -115,7 +115,7 @@ TEST(HalfwordQueue, ClearForgetsEverything) {
   EXPECT_EQ(queue.free(), 5);
 }
 
-// What is read is what was committed, in order, whatever comes in between; room is always exact, a clock late.
+// Reads return the committed halfwords in order, with any operations in between; room is exact, delayed by one clock.
 void compare_with_deque(std::size_t depth, std::uint64_t seed) {
   HalfwordQueue queue(depth);
   std::mt19937_64 random(seed);
@@ -156,7 +156,7 @@ TEST(HalfwordQueue, GivesBackWhatWasCommittedInOrder) {
   for (const std::size_t depth : {2U, 3U, 37U, 64U, 2560U, 8192U, 32768U}) compare_with_deque(depth, 7 + depth);
 }
 
-// The room has a bit more than a pointer: an empty queue of the largest depth shows 0x8000.
+// The room has one bit more than a pointer: an empty queue of the largest depth shows 0x8000.
 TEST(HalfwordQueue, CountsItsFullDepth) {
   HalfwordQueue queue(32768);
   EXPECT_EQ(queue.free(), 32768);

@@ -1,5 +1,5 @@
-// From an input's pin to its role and to FAULT: what the table of latencies in docs/reference/behaviour.md says, for a
-// pin that changes in any clock of a scan.
+// Latency from the pin of an input to its role and to FAULT, against the table in docs/reference/behaviour.md, for a
+// change in any clock of a scan.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Latencies {
   Range raw, level, role, fault;
 };
 
-// Of input 2, which says that the drive of axis 1 has a fault, with a filter of so many scans.
+// Latencies of input 2, the fault input of the drive of axis 1, with a filter of `scans` scans.
 Latencies measured(std::uint32_t scans) {
   Latencies result;
   for (unsigned phase = 0; phase < kScan; ++phase) {
@@ -79,7 +79,7 @@ TEST(InputLatency, WithFiltersOfAnyLength) {
     SCOPED_TRACE(scans);
     const Latencies l = measured(scans);
     expect_between(l.raw, 2, 2);
-    // More than the length, at most a scan more, and the synchroniser.
+    // Longer than the filter by at most one scan, plus the synchroniser.
     expect_between(l.level, kScan * scans + 3, kScan * (scans + 1) + 2);
     EXPECT_LE(l.role.most, kScan * (scans + 2) + 2);
     EXPECT_EQ(l.fault.most, l.role.most + 2);

@@ -1,5 +1,5 @@
-// The timing diagrams of docs/reference/integration.md: their rows are made here by the golden model of the whole card,
-// which the lockstep compares with the RTL in every clock, and must stand on the page as they are.
+// The timing diagrams of docs/reference/integration.md. The golden model of the whole card, which the lockstep compares
+// with the RTL in every clock, makes their rows; the page must contain exactly these rows.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -30,7 +30,7 @@ const std::string& page() {
   return text;
 }
 
-// Rows of ones and zeros, a column a clock.
+// Rows of ones and zeros, one column per clock.
 class Diagram {
  public:
   using Value = std::function<bool()>;
@@ -38,7 +38,7 @@ class Diagram {
   Diagram(CardModel& card, std::vector<std::pair<std::string, Value>> signals)
       : card_(card), signals_(std::move(signals)), rows_(signals_.size()) {}
 
-  // Signals as they stand before the edge that ends the clock.
+  // Records the signals before the clock edge.
   void clock(const CardModel::Inputs& in) {
     for (std::size_t n = 0; n < signals_.size(); ++n) rows_[n] += signals_[n].second() ? "  1" : "  0";
     card_.clock(in);
@@ -77,7 +77,7 @@ class IntegrationPage : public ::testing::Test {
     in.wdata = data;
     in.wstrb = 0xF;
   }
-  // Clocks from the first with awvalid to the first with bvalid.
+  // Clocks from the first one with awvalid to the first one with bvalid.
   unsigned write(std::uint32_t address, std::uint32_t data) {
     unsigned taken = 0;
     ask_to_write(address, data);
@@ -137,7 +137,7 @@ TEST_F(IntegrationPage, FirstWriteAfterReset) {
   EXPECT_NE(page().find("answered " + std::to_string(taken) + " clocks after"), std::string::npos) << taken;
 }
 
-// Pins that idle high, set up by the strap alone: no level changes from the clock on in which the reset takes effect.
+// Pins that idle high by the strap alone: no level changes from the clock on in which the reset takes effect.
 class InvertedPins : public IntegrationPage {
  protected:
   InvertedPins() : IntegrationPage(kIdle) {}

@@ -1,4 +1,4 @@
-// The limit check by its rules: which step is a cause, which side stays blocked, when an override and an overtravel
+// The rules of the limit check: which step is a cause, which side stays blocked, when an override and an overtravel
 // end.
 #include "trammel/model/limit_check.hpp"
 
@@ -15,10 +15,10 @@ namespace {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr std::uint8_t kAxis = 1U << 2;  // the one that moves
+constexpr std::uint8_t kAxis = 1U << 2;  // the axis that moves
 enum class Way : std::uint8_t { Minus, Plus };
 
-// A limit check with its inputs, which stay until they are changed.
+// A limit check with inputs that keep their values until they are changed.
 struct Limits {
   LimitCheck check{4};
   LimitCheck::Inputs in;
@@ -29,7 +29,7 @@ struct Limits {
     clock();
     in.setting.set = false;
   }
-  // Whether the step is a cause.
+  // True when the step is a cause.
   bool step(Way way, std::uint8_t axes = kAxis) {
     in.step = axes;
     in.dir = way == Way::Minus ? static_cast<std::uint8_t>(in.dir | axes) : static_cast<std::uint8_t>(in.dir & ~axes);
@@ -169,7 +169,7 @@ TEST(LimitCheck, OvertravelIsTheStepsThatARampMayMakeIntoTheLimit) {
         EXPECT_TRUE(limits.step(Way::Minus));
         if (limits.check.causes().beyond) break;
         limits.in.stopping = true;
-        limits.step(Way::Plus);  // does not count
+        limits.step(Way::Plus);  // a step away from the switch does not count
       }
       EXPECT_EQ(made, overtravel);
       limits.in.stopping = false;
@@ -222,7 +222,7 @@ TEST(LimitCheck, RestsOnlyWhereNothingChanges) {
   EXPECT_TRUE(rests());
 }
 
-// An override goes in the clock after its switch, at either end.
+// An override ends one clock after its switch is released, at either end.
 TEST(LimitCheck, AnOverrideRestsWhileItsSwitchIsActive) {
   for (const bool plus : {false, true}) {
     Limits limits;
@@ -231,7 +231,7 @@ TEST(LimitCheck, AnOverrideRestsWhileItsSwitchIsActive) {
     limits.clock();
     limits.set(reg::kLimitOverride, plus ? kAxis << 8 : kAxis);
     EXPECT_TRUE(rests());
-    // The other one stays, so that nothing else tells of it.
+    // The other switch stays active, so that only the override changes.
     (plus ? limits.in.roles.limit_plus : limits.in.roles.limit_minus) = 0;
     EXPECT_FALSE(rests());
     limits.clock();
@@ -241,7 +241,7 @@ TEST(LimitCheck, AnOverrideRestsWhileItsSwitchIsActive) {
   }
 }
 
-// On its ramp the axis keeps what is left of its overtravel; behind it all of it is there again.
+// During its ramp the axis keeps the rest of its overtravel; after the ramp it has all of it again.
 TEST(LimitCheck, OvertravelThatIsUsedRestsOnTheRampAlone) {
   Limits limits;
   const auto rests = [&] { return skip::horizon(limits.check, limits.in) != 0; };

@@ -1,5 +1,5 @@
-// The watch over the writing session's link by its rules, on the golden core: when the card stops, and by whose
-// silence.
+// The rules of the watch over the link of the writing session, on the golden core: when the card stops, and whose
+// silence stops it.
 #include "trammel/model/link_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -14,11 +14,11 @@ namespace field = card_map::field;
 
 constexpr std::uint64_t kLinkUnit = std::uint64_t{1} << model::LinkWatch::kUnitBits;
 
-// A host at the inner port, as one session or another of a port.
+// A host at the inner port, in a session of one of the ports.
 struct LinkHost {
   CoreBench& card;
   std::uint8_t port = 0;
-  bool begins = false;  // its next access is the first of a session
+  bool begins = false;  // its next access is the first one of a session
   bool of_session = true;
 
   bool access(std::uint32_t address, bool write, std::uint32_t data) {
@@ -52,7 +52,7 @@ model::CardConfig with_two_ports() {
 class LinkWatch : public ::testing::Test {
  protected:
   LinkWatch() { bench.skips = true; }
-  // `times` looks, a quarter of a unit apart.
+  // Makes `times` accesses, a quarter of a unit apart.
   void looks(LinkHost& host, unsigned times) {
     for (; times != 0; --times) {
       skip::run(bench.core, kLinkUnit / 4);

@@ -1,4 +1,4 @@
-// The machine's place by its rules: who sets it, what an axis loses it by, and what it outlives.
+// The rules of the machine's place: who sets it, which events make an axis lose it, and which it survives.
 #include "trammel/model/machine_place.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace reg = card_map::reg;
 
 constexpr std::uint32_t kAll = 0x0F0F;  // four axes, valid and homed
 
-// With its inputs, which stay until they are changed.
+// A MachinePlace with inputs that keep their values until they are changed.
 struct Machine {
   MachinePlace place{4};
   MachinePlace::Inputs in;
@@ -32,7 +32,7 @@ struct Machine {
     clock();
     in.cut = false;
   }
-  // A loss shows two clocks after its event.
+  // A loss is visible two clocks after its event.
   std::uint32_t after_cut() {
     cut();
     in.step = 0;

@@ -1,5 +1,5 @@
-// From a role of an input to the last pulse: what the table of latencies in docs/reference/behaviour.md says, at every
-// clock between two steps; and what stops, holds and stays where it is.
+// From the role of an input to the last pulse: the latencies in the table of docs/reference/behaviour.md, for every
+// clock between two steps; and which conditions stop, hold or do nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using card_map::Opcode;
 
 constexpr unsigned kStepEvery = 16;  // clocks
 
-// A motion core on a line of its first axis, a step every kStepEvery clocks.
+// A motion core on a line of its first axis, with a step every kStepEvery clocks.
 class MovingCore {
  public:
   explicit MovingCore(bool backwards = false) : core(2, 0, card_map::engines::kMachineInputs) {
@@ -102,12 +102,12 @@ class MovingCore {
 };
 
 struct Latency {
-  std::uint64_t latch = 0;  // the longest, in clocks from the role's level
+  std::uint64_t latch = 0;  // longest, in clocks from the level of the role
   std::uint64_t hold = 0;
   std::uint64_t last_step = 0;
 };
 
-// The longest over every clock between two steps.
+// The longest latency over all clocks between two steps.
 template <class Event>
 Latency latency(std::uint32_t reaction, const Event& event) {
   Latency longest;
@@ -155,7 +155,7 @@ TEST(MachineStops, LatenciesAreThoseOfThePage) {
   expect(latency(kRamp, +button), 0, 2, kRest);
 }
 
-// The ramp goes on for OVERTRAVEL steps into the switch; the next is made, too, and those that are on their way.
+// The ramp continues for OVERTRAVEL steps into the switch; the next step is made too, and so are those in progress.
 TEST(MachineStops, ARampEndsWithItsOvertravel) {
   for (const unsigned overtravel : {0U, 1U, 7U, 40U}) {
     MovingCore moving(true);

@@ -1,4 +1,5 @@
-// The golden model of the whole card over its bus alone, for what the reference pages say; and its simplest commands.
+// A host that uses only the bus of the golden model of the whole card, for the tests of the reference pages; and the
+// simplest commands.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@
 
 namespace trammel::testing {
 
-// Of the path, or of the pins: `tick` is then the clock.
+// A step of the path or a step at the pins; for a step at the pins `tick` is the clock.
 struct PathStep {
   std::uint64_t tick;
   unsigned axis;
@@ -93,7 +94,7 @@ class PageHost : public model::CardSteps {
   }
   std::int32_t position(unsigned axis) { return static_cast<std::int32_t>(card.position(axis)); }
 
-  // A one-shot move of axis 0 (and 1 as its mirror image).
+  // Registers of a one-shot move of axis 0, and of axis 1 in the opposite direction.
   void direct(std::uint64_t frequency, std::uint32_t count, std::uint64_t length) {
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
       write(card_map::reg::frequency_lo(axis), static_cast<std::uint32_t>(frequency));

@@ -1,4 +1,4 @@
-// OUTPUT, MARK and the pins on the golden core, by what the page says of them.
+// OUTPUT, MARK and the pins on the golden core, against their documentation.
 #include "trammel/model/path_commands.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using card_map::Area;
 constexpr std::uint64_t kFastest = ~std::uint64_t{0};  // a tick nearly every clock
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// Clocks until `happened`, at most `limit`; the cycle after which it shows.
+// Runs until `happened`, at most `limit` clocks; returns the cycle after which it shows.
 template <class Happened>
 std::uint64_t cycle_of(CoreBench& bench, std::uint64_t limit, Happened happened) {
   for (; limit != 0; --limit) {
@@ -25,10 +25,9 @@ std::uint64_t cycle_of(CoreBench& bench, std::uint64_t limit, Happened happened)
   return kAll;
 }
 
-// A line that steps on its last tick alone: 3/4 of a pulse over n ticks crosses one half within, so n - 1 ticks of
-// none.
+// A line whose only step is in its last tick: half a pulse over n ticks, rounded up.
 bool line_with_last_step(CoreBench& bench, std::uint64_t ticks) {
-  // 1/2 + n * i reaches 1 at n alone: i = 1 / 2n, rounded up.
+  // 1/2 + n * i reaches 1 only in tick n: i = 1 / 2n, rounded up.
   return bench.line(ticks,
                     {static_cast<std::int64_t>((static_cast<std::uint64_t>(kOnePulse) + 2 * ticks - 1) / (2 * ticks))});
 }
@@ -60,7 +59,7 @@ TEST(PathCommands, WhereNothingRunsAnOutputComesAtOnce) {
   bench.idle(300);
   ASSERT_TRUE(bench.output(0b1000, 0));
   EXPECT_LT(cycle_of(bench, 40, [](const auto& o) { return o.output == 0b1000; }), kAll);
-  // And it does not wait for the path behind it.
+  // The output does not wait for the path behind it.
   ASSERT_TRUE(bench.output(0, 0b1000));
   ASSERT_TRUE(bench.line(100, {kOnePulse / 2}));
   EXPECT_LT(cycle_of(bench, 40, [](const auto& o) { return o.output == 0; }), kAll);
@@ -84,7 +83,8 @@ TEST(PathCommands, SeveralInARowMergeAndTheLaterWins) {
   EXPECT_EQ(seen, (std::vector<std::uint32_t>{0, 0b1010}));
 }
 
-// The gap-free length of lines of 4 axes with `commands` between them, by the page: 22 ticks and the commands' decode.
+// Longest distance between two ticks, in clocks, of lines of 4 axes with `outputs` OUTPUTs and `marks` MARKs after
+// each.
 std::uint64_t largest_gap(std::uint64_t ticks, unsigned outputs, unsigned marks) {
   CoreBench bench;
   bench.write(reg::kHold, 1);
@@ -112,7 +112,7 @@ TEST(PathCommands, DecodeLengthensTheGapFreeLine) {
   for (unsigned outputs = 0; outputs < 3; ++outputs) {
     for (unsigned marks = 0; marks < 3; ++marks) {
       const std::uint64_t ticks = 20 + 10 * outputs + 8 * marks;
-      // One clock in 2^48 has no tick.
+      // About one clock in 2^48 has no tick.
       EXPECT_LE(largest_gap(ticks, outputs, marks), 2U) << outputs << " " << marks;
       EXPECT_GT(largest_gap(ticks - 2, outputs, marks), 2U) << outputs << " " << marks;
     }
@@ -163,7 +163,7 @@ TEST(PathCommands, AMarkCountsAndLatchesTimeAndPosition) {
   const std::uint64_t step = cycle_of(bench, 2000, [](const auto& o) { return o.path_step != 0; });
   bench.idle(200);
   EXPECT_EQ(bench.read(reg::kMarks), 2U);
-  // TIME counts from 0 in the first clock after the reset; the strobe comes a clock after the mark.
+  // TIME is 0 in the first clock after the reset; the strobe comes one clock after the mark.
   EXPECT_EQ(bench.read(reg::time_lo(Area::Mark)), step + 1);
   EXPECT_EQ(bench.read(reg::geometry_begun(Area::Mark)), 2U);
   const auto at = static_cast<std::int32_t>(bench.read(reg::position(Area::Mark, 0)));
@@ -171,7 +171,7 @@ TEST(PathCommands, AMarkCountsAndLatchesTimeAndPosition) {
   EXPECT_LE(at, 1);
 }
 
-// However many marks come, an access is answered in time.
+// An access is answered in time, however many marks come.
 TEST(PathCommands, ARowOfMarksKeepsNoAccessWaiting) {
   CoreBench bench;
   bench.write(reg::kHold, 1);

@@ -1,5 +1,5 @@
-// The path engines by the page's clocks: the path domain's 3, path ticks from the prescaler, and what the sequencer may
-// know of them.
+// The path engines against the documented clocks: the 3 clocks of the path domain, path ticks from the prescaler, and
+// the signals to the sequencer.
 #include "trammel/model/path_engines.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ void load(PathEngines& engines, unsigned target, std::uint64_t value, int halfwo
   }
 }
 
-// A circle of radius r around (-r, 0) in the plane of axes 1 and 0 (x is axis 1), path ticks at `prescale`.
+// A circle of radius r around (-r, 0) in the plane of axes 1 and 0 (x is axis 1); `prescale` is in path ticks per feed
+// tick.
 void begin_circle(PathEngines& engines, std::uint64_t r, std::int64_t prescale) {
   load(engines, load_target::kPrescale, static_cast<std::uint64_t>(prescale), 3);
   load(engines, load_target::kPlane, 1U << 4, 1);
@@ -73,7 +74,7 @@ TEST(PathEngines, ACutDropsWhatIsOnItsWay) {
   }
 }
 
-// A feed tick at c that is a path tick: at the accumulator c+5, its step at c+8 by axis.
+// A feed tick at c that is a path tick reaches the accumulator at c+5 and makes its step at c+8.
 TEST(PathEngines, APathTickTakesItsClocks) {
   PathEngines engines;
   begin_circle(engines, 10, kOne);
@@ -85,7 +86,7 @@ TEST(PathEngines, APathTickTakesItsClocks) {
     const auto& o = engines.outputs();
     EXPECT_EQ(o.path_tick, clock == 5) << clock;
     EXPECT_EQ(o.step, clock == 8 ? 2U : 0U) << "x is axis 1, and steps first where F is 0; clock " << clock;
-    // The tick was at the accumulator at 5: payload from 5 + 6, done from 5 + 10.
+    // The accumulator got the tick at 5: payload_ready from 5 + 6, done from 5 + 10.
     EXPECT_EQ(o.payload_ready, clock >= 11) << clock;
     EXPECT_EQ(o.done, clock >= 15) << clock;
     EXPECT_TRUE(o.ready);
@@ -94,7 +95,7 @@ TEST(PathEngines, APathTickTakesItsClocks) {
   EXPECT_TRUE(engines.outputs().missed_end);
 }
 
-// Ticks as fast as they are taken: every path tick makes a step, none is lost, and the circle ends where it began.
+// Ticks at the highest rate: every path tick makes a step, none is lost, and the circle ends at its start.
 TEST(PathEngines, ACircleAsFastAsItGoes) {
   for (const std::uint64_t r : {1U, 5U, 30U}) {
     PathEngines engines;
@@ -135,7 +136,7 @@ TEST(PathEngines, TicksOfLinesLeaveEnginesReadyAndDone) {
   }
 }
 
-// Ticks in flight and silent ones of the prescaler at once.
+// Jumps over ticks in flight and ticks of the prescaler without a carry.
 TEST(PathEngines, JumpEqualsClock) {
   std::mt19937_64 random(3);
   for (int n = 0; n < 500; ++n) {

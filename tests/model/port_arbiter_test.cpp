@@ -1,4 +1,4 @@
-// The arbiter's model with hosts that keep the port's rules: nothing is lost, mixed up or starved.
+// The model of the arbiter with hosts that follow the rules of the port: no access is lost, mixed up or starved.
 #include "trammel/model/port_arbiter.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,8 @@ TEST(PortArbiter, PassesARequestOnTwoClocksLater) {
   }
 }
 
-// All ask at once and again at once: they are served in turn, each in the clock after the answer before it.
+// All ports ask at once, and ask again after each answer. They are served in turn; a waiting request goes out in the
+// clock after the previous answer.
 TEST(PortArbiter, ServesInTurn) {
   for (std::size_t ports = 2; ports <= 4; ++ports) {
     PortArbiter arbiter(ports);
@@ -60,21 +61,22 @@ TEST(PortArbiter, ServesInTurn) {
     for (int clock = 0; clock < 60; ++clock) {
       const PortArbiter::Inner inner = arbiter.inner(now);
       if (inner.access.request) order.push_back(inner.port);
-      // The core answers in the very clock, so one clock lies between two requests.
+      // The core answers in the same clock, so requests can follow in consecutive clocks.
       ack = inner.access.request;
       const std::size_t served = arbiter.served();
       arbiter.clock(now, ack);
       for (PortArbiter::Access& access : now) access.request = false;
       if (ack) now[served].request = true;
     }
-    // A port asks anew in the clock after its answer and is noted a clock later, so two ports leave a gap.
+    // A port asks again in the clock after its answer, and the arbiter sees this one clock later; with two ports this
+    // leaves a gap.
     ASSERT_EQ(order.size(), ports == 2 ? 39U : 58U);
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i % ports) << i;
   }
 }
 
-// Random hosts and answer times: one access at a time, every access once, whole, and none waits for more than one of
-// each other port.
+// Random hosts and answer times: one access at a time; each access passes once and complete, and waits for at most one
+// access of each other port.
 TEST(PortArbiter, LosesAndMixesNothing) {
   for (std::size_t ports = 2; ports <= 4; ++ports) {
     std::mt19937_64 random(ports);

@@ -1,5 +1,5 @@
-// Position streaming on the golden card, by closed forms: a line that goes on stays the line that it was, tick for
-// tick; the next period is missing after stale_periods times its ticks; the stop is where the formula says.
+// Position streaming on the golden card, by closed forms. A late line continues as the same line, tick for tick; the
+// period is missing after stale_periods times its ticks; the stop is where the formula says.
 #include "trammel/model/position_streaming.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint64_t kHalf = std::uint64_t{1} << 63;  // a tick every other clock
-constexpr std::uint64_t kPeriodTicks = 200;              // of a period
+constexpr std::uint64_t kPeriodTicks = 200;              // ticks per period
 const std::vector<std::int64_t> kIncrements{kOnePulse / 7, -kOnePulse / 3, 12345678, 0};
 
 // Position after k ticks of a line.
@@ -26,8 +26,8 @@ std::int32_t after(std::int64_t increment, std::uint64_t k) {
   return static_cast<std::int32_t>(phase >> 40);
 }
 
-// Ticks that were taken and not yet at the axes are lost in a cut: where all axes stand on the line, at most so many
-// short of its `ticks`-th.
+// True when all axes are at the same tick of the line, at most `on_the_way` ticks before `ticks`: a cut loses the ticks
+// that have not reached the axes.
 constexpr std::uint64_t kOnTheWay = 6;
 bool on_the_line(const CoreBench& bench, std::uint64_t ticks, std::uint64_t on_the_way) {
   for (std::uint64_t k = ticks - on_the_way; k <= ticks; ++k) {
@@ -48,7 +48,7 @@ class Stream {
     bench.write(reg::kHold, 1);
   }
 
-  // Until the last tick of the line under way is taken.
+  // Runs until the last tick of the current line is taken.
   void to_the_end(std::uint64_t ticks) {
     while (ticks != 0) {
       bench.idle(1);
@@ -76,10 +76,10 @@ TEST(PositionStreaming, ALateLineGoesOnAlongItself) {
     ASSERT_TRUE(s.bench.finish(5 * kPeriodTicks));
     EXPECT_EQ(s.fault(), 0U);
     EXPECT_NE(s.bench.core.outputs().status & field::kStatusEnded, 0U);
-    // Its words took a while too.
+    // Sending its words took some clocks too.
     EXPECT_GE(beyond, clocks / 2 + 30);
     EXPECT_LT(beyond, clocks / 2 + 120);
-    // The period after it ended in time: nothing went on beyond it.
+    // The period after it ended in time, so no ticks went beyond its end.
     EXPECT_EQ(s.bench.read(reg::kStaleTicks), 0U);
     for (unsigned n = 0; n < 4; ++n) {
       const auto position = static_cast<std::int32_t>(s.bench.core.position(n));
@@ -90,7 +90,7 @@ TEST(PositionStreaming, ALateLineGoesOnAlongItself) {
   EXPECT_GT(stale, 50U);
 }
 
-// FAULT after exactly stale_periods * N ticks; then the ramp, along the line.
+// FAULT after exactly stale_periods * N ticks, then a ramp along the line.
 TEST(PositionStreaming, AMissingPeriodStopsOnTheLine) {
   for (std::uint32_t stale_periods = 0; stale_periods < 4; ++stale_periods) {
     for (const std::uint32_t slew : {0x10'0000U, 0x40'0000U, 0xFFF'FFFFU}) {
@@ -102,7 +102,7 @@ TEST(PositionStreaming, AMissingPeriodStopsOnTheLine) {
       s.to_the_end(kPeriodTicks);
       std::uint64_t ticks = 0;
       std::uint64_t at_fault = 0;
-      double ratio = 0;  // where the ramp begins: a slow rise from the hold before may not have ended
+      double ratio = 0;  // ratio at the start of the ramp; below 1 while the rise after the hold goes on
       while ((s.bench.core.outputs().status & field::kStatusBusy) != 0) {
         if (s.fault() == 0) at_fault = ticks;
         ratio = std::max(ratio, s.bench.core.outputs().ratio * 0x1p-16);
@@ -110,14 +110,16 @@ TEST(PositionStreaming, AMissingPeriodStopsOnTheLine) {
         ticks += s.bench.core.outputs().tick ? 1U : 0U;
       }
       EXPECT_EQ(s.fault(), field::kFaultMissingPeriod);
-      // A tick and the fault are both seen two clocks after they are decided, and a tick comes in two clocks.
+      // Ticks and the fault are visible two clocks after their decision, and ticks are two clocks apart: the count may
+      // differ by 1.
       EXPECT_LE(stale_periods * kPeriodTicks, at_fault + 1) << stale_periods;
       EXPECT_LE(at_fault, stale_periods * kPeriodTicks + 1) << stale_periods;
       EXPECT_EQ(s.bench.read(reg::kStaleTicks), ticks);
-      // From full ratio the ramp takes 2^28 / slew updates of 4 clocks, at half a tick a clock on average a quarter.
+      // From full ratio the ramp takes 2^28 / slew updates of 4 clocks. Full ratio gives half a tick per clock, the
+      // ramp on average a quarter.
       const double ramp = ratio * ratio * 0x1p28 / slew * 4 * 0.25;
       EXPECT_NEAR(static_cast<double>(ticks - stale_periods * kPeriodTicks), ramp, 8) << slew;
-      // The last ticks of a slow ramp are far apart.
+      // The last ticks of a slow ramp are far apart, so none is on its way at the cut.
       EXPECT_TRUE(on_the_line(s.bench, kPeriodTicks + ticks, slew == 0xFFF'FFFFU ? kOnTheWay : 0)) << slew;
       EXPECT_EQ(s.bench.read(reg::kStopTimeHi), 0U);
       EXPECT_EQ(s.bench.read(reg::kStopFault), field::kFaultMissingPeriod);
@@ -137,14 +139,14 @@ TEST(PositionStreaming, AnImmediateReactionCutsAtOnce) {
   EXPECT_GE(ticks, kPeriodTicks);
   EXPECT_LE(ticks, kPeriodTicks + 2);
   EXPECT_TRUE(on_the_line(s.bench, kPeriodTicks + ticks, kOnTheWay));
-  // The stream is open again when the fault is cleared; nothing moves by that.
+  // Clearing the fault opens the stream again and moves nothing.
   EXPECT_FALSE(s.bench.end());
   s.bench.write(reg::kFault, field::kFaultMissingPeriod);
   s.bench.number = 0;
   EXPECT_TRUE(s.bench.end());
 }
 
-// Periods one behind the other: a tick every other clock, all the way.
+// Consecutive periods: a tick every other clock, without a gap.
 TEST(PositionStreaming, PeriodsInTimeHaveNoSeam) {
   Stream s(1);
   s.bench.feed(1, kHalf);
@@ -157,13 +159,13 @@ TEST(PositionStreaming, PeriodsInTimeHaveNoSeam) {
     if (s.bench.core.outputs().tick) ticks.push_back(s.bench.core.cycles());
     EXPECT_FALSE(s.stale());
   }
-  // The first ones belong to the ramp out of the hold.
+  // The first ticks belong to the ramp out of the hold.
   ASSERT_EQ(ticks.size(), 20 * kPeriodTicks + 19);
   for (std::size_t i = 100; i < ticks.size(); ++i) EXPECT_EQ(ticks[i] - ticks[i - 1], 2U) << i;
   EXPECT_EQ(s.fault(), 0U);
 }
 
-// A piece that gets faster keeps the rate that it has when its ticks are over.
+// An accelerating piece keeps the rate that it has reached when its ticks are used up.
 TEST(PositionStreaming, ASpentPieceKeepsItsRate) {
   Stream s(4);
   const auto acceleration = static_cast<std::int64_t>(0x1p64 / 2000);
@@ -191,10 +193,10 @@ TEST(PositionStreaming, TheModeChangesAtRestAlone) {
   bench.write(reg::kHold, 0);
   ASSERT_TRUE(bench.finish(10'000));
   EXPECT_EQ(bench.core.outputs().fault, 0U);
-  // Now it is on: without another period the next line is the last one.
+  // Streaming is now on: if no other period follows, the next line is the last one.
   bench.feed(kPeriodTicks, kHalf);
   bench.line(kPeriodTicks, kIncrements);
-  // Off, says the host, but the line is under way.
+  // The host switches it off, but a line is running.
   bench.write(reg::kStreaming, 0);
   ASSERT_TRUE(bench.finish(10'000));
   EXPECT_EQ(bench.core.outputs().fault, field::kFaultMissingPeriod);
@@ -206,7 +208,7 @@ TEST(PositionStreaming, TheModeChangesAtRestAlone) {
   EXPECT_EQ(bench.core.outputs().fault, 0U);
 }
 
-// Not inside a command either: the rest of it comes under the old mode.
+// The mode does not change inside a command either: the whole command belongs to the old mode.
 TEST(PositionStreaming, TheModeWaitsForTheEndOfACommand) {
   CoreBench bench;
   bench.feed(kPeriodTicks, kHalf);
@@ -220,7 +222,7 @@ TEST(PositionStreaming, TheModeWaitsForTheEndOfACommand) {
   EXPECT_EQ(bench.core.outputs().fault, 0U);
 }
 
-// A hold and a ratio of 0 stop the ticks, so that no period is missing meanwhile.
+// A hold and a ratio of 0 stop the ticks, so no period is missing meanwhile.
 TEST(PositionStreaming, NothingIsMissingInAHold) {
   for (const std::uint32_t address : {reg::kHold, reg::kRatioFeed}) {
     Stream s(1);
@@ -235,7 +237,7 @@ TEST(PositionStreaming, NothingIsMissingInAHold) {
     EXPECT_EQ(s.fault(), 0U);
     const std::uint32_t beyond = s.bench.read(reg::kStaleTicks);
     EXPECT_LT(beyond, kPeriodTicks);
-    // The next one begins at once, before any tick.
+    // The next line begins at once, before any tick.
     const std::uint32_t begun = s.bench.core.outputs().geometry_begun;
     s.bench.line(kPeriodTicks, kIncrements);
     s.bench.idle(40);
@@ -249,7 +251,7 @@ TEST(PositionStreaming, NothingIsMissingInAHold) {
   }
 }
 
-// The under-run guard does not look at what is queued.
+// The under-run guard is off in position streaming.
 TEST(PositionStreaming, TheGuardIsOff) {
   for (const bool streaming : {false, true}) {
     CoreBench bench;
@@ -265,7 +267,7 @@ TEST(PositionStreaming, TheGuardIsOff) {
   }
 }
 
-// An END that comes late ends the line where it is.
+// A late END ends the line at its present position.
 TEST(PositionStreaming, ALateEndIsAnEnd) {
   Stream s(3);
   s.bench.feed(1, kHalf);

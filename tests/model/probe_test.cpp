@@ -1,4 +1,4 @@
-// Probing and waiting for an input on the golden core, by what the page says of them.
+// Probing and waiting for an input on the golden core, against their documentation.
 #include "trammel/model/probe.hpp"
 
 #include <gtest/gtest.h>
@@ -15,9 +15,10 @@ namespace field = card_map::field;
 using card_map::Area;
 
 constexpr std::uint64_t kFullRate = ~std::uint64_t{0};  // a tick nearly every clock
-constexpr unsigned kHigh = 0x20;                        // of a condition: the level that trips
+constexpr unsigned kHigh = 0x20;                        // bit of a condition: a high level trips
 
-// A card that probes along +X, a pulse in `ticks_a_pulse` ticks, a tick in four clocks; input 2 trips when it is high.
+// A card that probes along +X at one pulse per `ticks_a_pulse` ticks and one tick per four clocks; input 2 trips when
+// it is high.
 class Probing : public CoreBench {
  public:
   static constexpr std::uint64_t kClocksATick = 4;
@@ -34,12 +35,12 @@ class Probing : public CoreBench {
   }
   bool has(std::uint32_t bit) { return (core.outputs().status & bit) != 0; }
   bool clear() { return write(reg::kControl, field::kControlProbeClear); }
-  // Pulses at the pins up to this cycle.
+  // Number of pulses at the pins up to this cycle.
   std::int64_t pulses_until(std::uint64_t cycle) const {
     return std::count_if(steps.pins.begin(), steps.pins.end(),
                          [cycle](const auto& pin) { return std::get<0>(pin) <= cycle; });
   }
-  // Clocks until `bit` of STATUS is set.
+  // Clocks until `bit` of STATUS is set, at most `limit`.
   std::uint64_t until(std::uint32_t bit, std::uint64_t limit) {
     std::uint64_t clocks = 0;
     for (; clocks < limit && !has(bit); ++clocks) idle(1);
@@ -54,7 +55,7 @@ TEST(Probe, TheEdgeLatchesPositionsTwoClocksAfterItShows) {
     card.idle(400 + at);
     card.pins = 0b0100;
     card.idle(1);
-    // Two flip-flops, and INPUTS shows it; the strobe is two clocks later.
+    // INPUTS shows the level after two flip-flops; the strobe comes two clocks later.
     const std::uint64_t strobe = card.core.cycles() + 3;
     card.idle(400);
     EXPECT_TRUE(card.has(field::kStatusProbed));
@@ -65,7 +66,7 @@ TEST(Probe, TheEdgeLatchesPositionsTwoClocksAfterItShows) {
   }
 }
 
-// The ratio goes from 1 to 0 in 2^28 / SLEW updates of 4 clocks: ticks of half that time.
+// The ratio goes from 1 to 0 in 2^28 / SLEW updates of 4 clocks; this makes the ticks of half that time.
 TEST(Probe, TheStopIsARampAlongThePath) {
   for (const std::uint32_t slew : {0x100000U, 0x20000U, 0x8000U}) {
     const std::uint64_t ramp = 4 * (std::uint64_t{1} << 28) / slew;
@@ -79,9 +80,9 @@ TEST(Probe, TheStopIsARampAlongThePath) {
     card.idle(100);
     EXPECT_FALSE(card.has(field::kStatusPathActive | field::kStatusFeedActive));
     const auto pulses = static_cast<double>(card.pulses_until(card.core.cycles()) - card.pulses_until(before));
-    // And those of about 16 clocks: on their way to the pins, and from the edge to the first slower ratio.
+    // Plus the pulses of about 16 clocks: those on their way to the pins, and those before the ratio first falls.
     EXPECT_NEAR(pulses, static_cast<double>(ramp / 2 + 16) / 2 / Probing::kClocksATick, 2);
-    // Nothing follows, and the position is that of the pulses.
+    // No pulse follows, and the position equals the count of pulses.
     card.idle(5000);
     EXPECT_EQ(card.core.position(0), card.pulses_until(card.core.cycles()));
     EXPECT_EQ(card.core.position(0), card.pulses_until(before) + static_cast<std::int64_t>(pulses));
@@ -102,7 +103,7 @@ TEST(Probe, WhatIsQueuedUpToProbeEndIsDroppedAndCounted) {
   EXPECT_TRUE(card.dwell(10'000));
   EXPECT_TRUE(card.probe(2));
   EXPECT_TRUE(card.wait_input(kHigh | 3, 0));
-  EXPECT_TRUE(card.feed(10, kFullRate));  // ticks without a path: no fault where it is dropped
+  EXPECT_TRUE(card.feed(10, kFullRate));  // ticks without a path are no fault when they are dropped
   EXPECT_TRUE(card.probe_end());
   EXPECT_TRUE(card.line(100, {0, kOnePulse / 2}));
   EXPECT_TRUE(card.feed(100, kFullRate / 16));
@@ -111,14 +112,14 @@ TEST(Probe, WhatIsQueuedUpToProbeEndIsDroppedAndCounted) {
   card.idle(3000);
   EXPECT_TRUE(card.has(field::kStatusProbed));
   EXPECT_TRUE(card.has(field::kStatusBusy));
-  // Lines, the arc, three barriers; six pieces and the barriers.
+  // Geometry: three lines, the arc, three barriers. Feed: six pieces and three barriers.
   EXPECT_EQ(card.read(reg::kGeometryBegun), 3U + 1 + 3);
   EXPECT_EQ(card.read(reg::kFeedBegun), 6U + 3);
   EXPECT_EQ(card.read(reg::kOutputs), 0U);
   EXPECT_EQ(card.read(reg::kMarks), 0U);
   EXPECT_EQ(card.core.position(1), 0);
   EXPECT_EQ(card.read(reg::kFault), 0U);
-  // What stands behind it goes on when the host has seen the edge.
+  // Commands behind PROBE_END run after the host has cleared the probe.
   EXPECT_TRUE(card.clear());
   EXPECT_TRUE(card.finish(2000));
   EXPECT_FALSE(card.has(field::kStatusProbed));
@@ -141,7 +142,7 @@ TEST(Probe, AnInputThatIsTrippedAlreadyEndsItBeforeTheFirstStep) {
   EXPECT_TRUE(card.steps.path.empty());
 }
 
-// 8 clocks without a path, counted from the first one in which the PROBE is decoded.
+// The probe is armed after 8 clocks without a path, counted from the first clock in which PROBE is decoded.
 TEST(Probe, ItIsArmedWhenThePathBeforeItHasEnded) {
   Probing card;
   ASSERT_TRUE(card.line(200, {kOnePulse / 2}));
@@ -151,7 +152,7 @@ TEST(Probe, ItIsArmedWhenThePathBeforeItHasEnded) {
   card.pins = 0b0100;
   card.idle(20);
   card.write(reg::kHold, 0);
-  // While the first path runs the input is not looked at.
+  // The input is ignored while the first path runs.
   std::uint64_t last = 0;
   for (int i = 0; i < 5000 && !card.has(field::kStatusProbed); ++i) {
     card.idle(1);
@@ -168,7 +169,7 @@ TEST(Probe, WithoutAnEdgeProbeEndSaysSo) {
   EXPECT_TRUE(card.has(field::kStatusProbeMissed));
   EXPECT_FALSE(card.has(field::kStatusProbed));
   EXPECT_EQ(card.core.position(0), 50);
-  card.pins = 0b0100;  // too late
+  card.pins = 0b0100;  // after the end of the probe
   card.idle(100);
   EXPECT_FALSE(card.has(field::kStatusProbed));
   EXPECT_TRUE(card.clear());
@@ -179,11 +180,11 @@ TEST(Probe, WithoutAnEdgeProbeEndSaysSo) {
   card.start(100, 2);
   EXPECT_TRUE(card.finish(3000));
   EXPECT_TRUE(card.has(field::kStatusProbeMissed));
-  // The next PROBE takes it back as it is armed.
+  // The next PROBE clears the flag when it is armed.
   card.start(4000, 2);
   card.idle(200);
   EXPECT_FALSE(card.has(field::kStatusProbeMissed));
-  // A PROBE_END without a PROBE is a barrier like any other.
+  // A PROBE_END without a PROBE is an ordinary barrier.
   EXPECT_TRUE(card.finish(30'000));
   EXPECT_TRUE(card.clear());
   EXPECT_TRUE(card.probe_end());
@@ -224,7 +225,7 @@ TEST(Probe, AnAbortEndsItInEveryStateAndTheEdgeStaysKnown) {
     card.write(reg::kControl, field::kControlAbort);
     EXPECT_TRUE(card.finish(100)) << state;
     EXPECT_EQ(card.has(field::kStatusProbed), state > 1);
-    // Off: an edge does nothing, and what comes now runs.
+    // The probe is off: an edge does nothing, and new commands run.
     card.pins = state > 1 ? 0 : 0b0100;
     card.idle(20);
     card.number = 0;
@@ -240,7 +241,7 @@ TEST(Probe, AnAbortEndsItInEveryStateAndTheEdgeStaysKnown) {
   }
 }
 
-// A hold of the host waits for the end of a fixed piece; the probe's does not.
+// A hold of the host waits for the end of a fixed piece; the hold of a probe does not.
 TEST(Probe, FixedPiecesStopToo) {
   Probing card;
   EXPECT_TRUE(card.probe(kHigh | 2));
@@ -254,7 +255,8 @@ TEST(Probe, FixedPiecesStopToo) {
   EXPECT_FALSE(card.has(field::kStatusPathActive));
 }
 
-// What is dropped is not counted off. Nothing is held for under-run until nothing was queued once, and then again.
+// Dropped commands are not subtracted from the queued ticks, so the under-run guard does not hold until the queues have
+// been empty once. Then it holds again.
 TEST(Probe, TheUnderrunHoldForgetsWhatIsDropped) {
   Probing card;
   const auto starve = [&card] {
@@ -280,13 +282,13 @@ TEST(Probe, TheUnderrunHoldForgetsWhatIsDropped) {
   EXPECT_TRUE(card.has(field::kStatusUnderrun));
 }
 
-// While a fault stops the card on a ramp no edge is taken, nor a PROBE: the STOP area's snapshot stays whole.
+// While a fault stops the card on a ramp, edges and PROBE are ignored, so the snapshot in the STOP area stays intact.
 TEST(Probe, AFaultsRampTakesNoEdge) {
   Probing card(0x4000);
   ASSERT_TRUE(card.write(reg::kStopReaction, 1));
   ASSERT_TRUE(card.write(reg::kHoldLimit, 50));
   ASSERT_TRUE(card.write(reg::step_length(0), 400));
-  card.start(100'000, 20);  // a pulse in 80 clocks: too fast
+  card.start(100'000, 20);  // one pulse per 80 clocks is too fast
   card.until(field::kStatusStopping, 100'000);
   EXPECT_TRUE(card.has(field::kStatusStopping));
   const std::uint64_t stopped = card.core.cycles();
@@ -315,7 +317,7 @@ TEST(WaitInput, EndsWithItsLevelOrItsTime) {
   }
   CoreBench card;
   card.idle(300);
-  // Without a time-out: for as long as it takes, and what is behind it waits with it.
+  // Without a time-out the card waits as long as necessary, and so do the commands behind it.
   ASSERT_TRUE(card.wait_input(1, 0));
   card.pins = 0b0010;
   ASSERT_TRUE(card.line(100, {kOnePulse / 2}));
@@ -330,12 +332,12 @@ TEST(WaitInput, EndsWithItsLevelOrItsTime) {
   EXPECT_EQ(card.core.outputs().status & field::kStatusWaiting, 0U);
   EXPECT_TRUE(card.finish(3000));
   EXPECT_EQ(card.core.position(0), 50);
-  // The input has its level already: one clock.
+  // The input has the level already, so the wait takes one clock.
   ASSERT_TRUE(card.wait_input(1, 0));
   EXPECT_TRUE(card.finish(100));
 }
 
-// Inputs 16 to 31 can be named, and no card has them: 0 whatever the pins are.
+// A condition can name inputs 16 to 31, which no card has; they read 0 at any level of the pins.
 TEST(Probe, AnInputThatTheCardLacksStaysAtZero) {
   Probing card;
   card.pins = 0xFFFF;
@@ -348,7 +350,7 @@ TEST(Probe, AnInputThatTheCardLacksStaysAtZero) {
   }
 }
 
-// Laid out, not built: conditions on captures ([15]), pieces without steps ([2] of the mask byte).
+// Reserved bits of a condition, such as captures ([15]), are refused.
 TEST(Probe, CapturesAreRefused) {
   for (unsigned bit = 6; bit < 16; ++bit) {
     for (const bool probes : {false, true}) {

@@ -1,4 +1,4 @@
-// The pulse generator's golden model against the closed form x_k = floor(1/2 + k * increment / 2^40).
+// The golden model of the pulse generator against the closed form x_k = floor(1/2 + k * increment / 2^40).
 #include "trammel/model/pulse_generator.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,8 @@ int signed_step(const PulseGenerator& generator) {
   return out.dir ? -1 : 1;
 }
 
-// One tick, taken to its end: the signed step it made, and where it came out of the pipeline.
+// Passes one tick through the pipeline; returns its signed step and checks that the step appears in the right clock
+// only.
 int tick(PulseGenerator& generator) {
   PulseGenerator::Inputs in;
   in.tick = true;
@@ -107,7 +108,7 @@ TEST(PulseGenerator, KeepsTheLineWithinItsBoundAndLandsOnTheEnd) {
     std::int64_t x = 0;
     for (std::int64_t k = 1; k <= ticks; ++k) {
       x += tick(generator);
-      // |x - p k / L| <= 1/2 + k / 2^41, times 2^41 L.
+      // |x - p k / L| <= 1/2 + k / 2^41, multiplied by 2^41 L.
       const Wide error = static_cast<Wide>(x) * ticks - static_cast<Wide>(pulses) * k;
       ASSERT_LE((error < 0 ? -error : error) << 41, ((Wide{1} << 40) + k) * ticks);
     }
@@ -120,7 +121,7 @@ TEST(PulseGenerator, LongLinesLandOnTheirEnd) {
   for (int n = 0; n < 30'000; ++n) {
     const std::int64_t ticks = n == 0 ? kPulseLength - 1 : static_cast<std::int64_t>(random() >> (24 + n % 30)) + 1;
     const std::int64_t length = std::min(ticks, kPulseLength - 1);
-    // Few pulses: the line goes from step to step, however long it is.
+    // With few pulses the test can jump from step to step, at any length of the line.
     const std::int64_t most = std::min<std::int64_t>(length, 200);
     const auto pulses = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(2 * most + 1)) - most;
     PulseGenerator generator;
@@ -163,7 +164,7 @@ TEST(PulseGenerator, SkippingEqualsTicking) {
   }
 }
 
-// A step made at once and placed in flight shows as one that was ticked.
+// A step that is computed at once and placed in the pipeline appears like a step from a tick.
 TEST(PulseGenerator, PlacedStepsShowLikeTickedOnes) {
   std::mt19937_64 random(5);
   for (int n = 0; n < 400; ++n) {
@@ -195,7 +196,7 @@ TEST(PulseGenerator, PlacedStepsShowLikeTickedOnes) {
 TEST(PulseGenerator, MirroredLineMakesMirroredSteps) {
   std::mt19937_64 random(6);
   for (int n = 0; n < 300; ++n) {
-    // Few significant bits: the phase meets one half and zero exactly.
+    // Few significant bits, so that the phase reaches exactly 1/2 and 0.
     const std::int64_t increment = static_cast<std::int64_t>(random() >> 60) << 36 | (n % 2 == 0 ? 0 : n);
     PulseGenerator there;
     PulseGenerator back;
@@ -268,11 +269,11 @@ TEST(PulseGenerator, ClearDropsStepsInFlight) {
   }
 }
 
-// The second paper's Lines 1..8: v = 5000 lines a second at 10 MHz, one start, 2000 clocks.
+// Lines 1 to 8 of the second paper: v = 5000 lines per second at 10 MHz, one start, 2000 clocks.
 TEST(PulseGenerator, OneShotLinesOfThePaper) {
   struct Case {
     std::array<int, 4> ends;
-    double largest;  // perpendicular, pulses
+    double largest;  // perpendicular distance, pulses
   };
   const std::array<Case, 8> cases{{{{0, 0, 20, 40}, 0.447},
                                    {{10, 10, 40, 20}, 0.316},

@@ -1,4 +1,5 @@
-// The watermarks against their definition: low is fewer halfwords queued than the watermark, two clocks later.
+// The watermarks against their definition: a queue is low when it holds fewer halfwords than the watermark; the flag
+// follows two clocks later.
 #include "trammel/model/queue_watermarks.hpp"
 
 #include <gtest/gtest.h>

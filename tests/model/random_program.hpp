@@ -9,7 +9,7 @@
 
 namespace trammel::testing {
 
-// Settings, paths, pieces and barriers of a program.
+// Random settings, paths, pieces and barriers of a program.
 class Program {
  public:
   explicit Program(Pair& pair) : p_(pair), axes_(pair.clocked.core.config().axes) {}
@@ -39,7 +39,7 @@ class Program {
     if (p_.one_in(8)) p_.write(card_map::reg::kStreaming, 1U | static_cast<std::uint32_t>(p_.any(0, 2)) << 8);
   }
 
-  // A tick every `pace` clocks.
+  // A tick about every `pace` clocks.
   void paths_and_pieces(double pace) {
     std::uint64_t ticks = 0;
     const bool probing = p_.one_in(2);
@@ -65,7 +65,7 @@ class Program {
     if (probing && !p_.one_in(6)) p_.send(command_words(card_map::Opcode::ProbeEnd, 0, number_++, 0, {}));
   }
 
-  // Arcs in chords alone, at a path tick for nearly each feed tick.
+  // Only arcs in chords.
   void arcs(double pace) {
     std::uint64_t ticks = 0;
     for (int i = 0; i < 4; ++i) ticks += chord_arc(p_.any(500, 3000));
@@ -73,7 +73,7 @@ class Program {
     barrier();
   }
 
-  // Refused where anything runs still.
+  // The card refuses the move while anything runs.
   void direct_move() {
     for (unsigned n = 0; n < axes_; ++n) {
       p_.write(card_map::reg::frequency_lo(n), static_cast<std::uint32_t>(p_.random()));
@@ -85,7 +85,7 @@ class Program {
     p_.write(card_map::reg::kStart, static_cast<std::uint32_t>(p_.any(1, (1U << axes_) - 1)));
   }
 
-  // PWM among the commands beside the path.
+  // Adds PWM commands to those beside the path.
   bool pwm = false;
 
  private:
@@ -95,7 +95,7 @@ class Program {
                           {{"select", select}, {"duty", p_.any(0, 0xFFFF)}, {"gain", p_.any(0, 0xFFFF)}}));
   }
 
-  // Commands that are neither paths nor barriers.
+  // Random commands that are neither paths nor barriers.
   void instants() {
     while (p_.one_in(3)) {
       if (pwm && p_.one_in(2))
@@ -132,7 +132,7 @@ class Program {
     return ticks;
   }
 
-  // In chords, with any further axes.
+  // An arc in chords with a random set of further axes.
   std::uint64_t chord_arc(std::uint64_t ticks) {
     const auto x = static_cast<unsigned>(p_.any(0, axes_ - 1));
     const auto y = static_cast<unsigned>((x + p_.any(1, axes_ - 1)) % axes_);

@@ -1,5 +1,5 @@
-// What docs/reference/behaviour.md says of ARC, and commands.md of ARC_CHORD, tried on the golden model of the whole
-// card over its bus alone.
+// Tests of the statements about ARC in docs/reference/behaviour.md and about ARC_CHORD in commands.md, on the golden
+// model of the whole card, through its bus only.
 #include <cmath>
 #include <tuple>
 
@@ -9,7 +9,7 @@
 namespace trammel::reference_page {
 namespace {
 
-// The page's rule, in its own words, on plain integers.
+// The documented rule in plain integers.
 struct Walk {
   std::int64_t f, gx, gy, hx, hy, left_x, left_y;
   int q;
@@ -62,7 +62,7 @@ driver::ArcCommand arc(std::int32_t x, std::int32_t y, std::int32_t end_x, std::
   return driver::with_ticks(result, 4 * path_ticks);
 }
 
-// The steps of an arc on the card; FAULT in `fault`.
+// Runs an arc on the card; returns its steps, and FAULT in `fault`.
 std::vector<std::pair<int, int>> steps_of(const driver::ArcCommand& command, std::uint32_t& fault) {
   Host host;
   host.send(command);
@@ -89,7 +89,7 @@ Walk walk_of(const driver::ArcCommand& a) {
           a.clockwise};
 }
 
-// Integer radii put F = 0, the tie, on the way.
+// With integer radii some steps start at F = 0, the tie.
 TEST(ReferencePage, TheArcRuleStepForStep) {
   for (const bool clockwise : {false, true}) {
     for (const int radius : {5, 13, 25}) {
@@ -112,30 +112,31 @@ TEST(ReferencePage, TheArcRuleStepForStep) {
 }
 
 TEST(ReferencePage, WhatWrongNumbersOfAnArcDo) {
-  // A quarter of R = 25, counter-clockwise from (25, 0) to (0, 25): 50 steps and no change of sign, as zero is
+  // A quarter of R = 25, counter-clockwise from (25, 0) to (0, 25): 50 steps and no change of sign, because zero is
   // positive.
   std::uint32_t fault = 0;
   const driver::ArcCommand good = arc(25, 0, 0, 25, 625, 0, false, 50);
   EXPECT_EQ(steps_of(good, fault).size(), 50U);
   EXPECT_EQ(fault, 0U);
-  // path_ticks is only compared with the count; the prescaler decides how many there are.
+  // path_ticks is only compared with the count; the prescaler determines the number of path ticks.
   driver::ArcCommand other = good;
   other.path_ticks = 1;
   EXPECT_EQ(steps_of(other, fault).size(), 50U);
   EXPECT_EQ(fault, 0U);
-  // Too many path ticks: those at the end make no step. Too few: PATH_INCOMPLETE.
+  // Surplus path ticks make no step. Too few path ticks: PATH_INCOMPLETE.
   other.prescale = good.prescale * 2;
   EXPECT_EQ(steps_of(other, fault).size(), 50U);
   EXPECT_EQ(fault, 0U);
   other.prescale = good.prescale / 2;
   EXPECT_EQ(steps_of(other, fault).size(), 25U);
   EXPECT_EQ(fault, field::kFaultPathIncomplete);
-  // Q too large: it goes on round; too small: straight to the end as soon as one coordinate has reached the end's.
+  // With Q too large the arc goes on round. With Q too small it goes straight to the end as soon as one coordinate has
+  // the value of the end.
   other = good;
   other.quadrants = 1;
   steps_of(other, fault);
   EXPECT_EQ(fault, field::kFaultPathIncomplete);
-  // On to (-25, 0): x changes its sign, y ends at zero, which is positive.
+  // To (-25, 0): x changes its sign, y ends at zero, which is positive.
   const driver::ArcCommand half = arc(25, 0, -25, 0, 625, 1, false, 100);
   EXPECT_EQ(steps_of(half, fault).size(), 100U);
   EXPECT_EQ(fault, 0U);
@@ -147,7 +148,7 @@ TEST(ReferencePage, WhatWrongNumbersOfAnArcDo) {
   for (const auto& step : straight) EXPECT_EQ(step, (std::pair<int, int>{-1, 0}));
 }
 
-// The page's arithmetic of ARC_CHORD, in its own words.
+// The documented arithmetic of ARC_CHORD.
 class ChordWalk {
  public:
   explicit ChordWalk(const driver::ArcChordCommand& arc) : arc_(arc), x_(arc.x), y_(arc.y) {
@@ -155,7 +156,7 @@ class ChordWalk {
     dx_ = next_dx();
   }
 
-  // Increments in force at path tick 1, 2, ..., to be asked for in order.
+  // Increments at a path tick; call it for ticks 1, 2, ... in order.
   std::pair<std::int64_t, std::int64_t> at(std::uint64_t tick) {
     const std::uint64_t chord = std::uint64_t{1} << arc_.m;
     const std::uint64_t before = (tick - 1) % chord;
@@ -164,7 +165,7 @@ class ChordWalk {
     if (tick == 1) return {arc_.first_x, arc_.first_y};
     return {dx_ + arc_.closing_x, dy_ + arc_.closing_y};
   }
-  // Of the chords.
+  // Increments of the chords, without the closing increment.
   std::int64_t dx() const { return dx_; }
   std::int64_t dy() const { return dy_; }
 
@@ -190,7 +191,7 @@ class ChordWalk {
 
 using Point = std::pair<std::int64_t, std::int64_t>;  // pulses
 
-// A quarter of a turn about (0, 0) by the page's formulas alone; the third axis makes `further` pulses.
+// A quarter turn around (0, 0) from the documented formulas alone; the third axis makes `further` pulses.
 driver::ArcChordCommand quarter_about_origin(Point start, Point end, bool clockwise, std::uint8_t k,
                                              std::int64_t further) {
   constexpr double kQuarter = 1.5707963267948966;  // rad
@@ -254,8 +255,8 @@ std::vector<Step> steps_of(const driver::ArcChordCommand& arc) {
   return steps;
 }
 
-// A path tick in two feed ticks: each axis steps in the path ticks in which the page's sums pass a pulse, and ends
-// where the host wants it.
+// One path tick per two feed ticks. Each axis steps in those path ticks in which the documented sums pass a pulse, and
+// ends at the commanded position.
 TEST(ReferencePage, AnArcInChordsTickForTick) {
   for (const bool clockwise : {false, true}) {
     for (const std::uint8_t k : {std::uint8_t{3}, std::uint8_t{5}}) {

@@ -1,11 +1,11 @@
-// What docs/reference/behaviour.md says of lines, direct moves, barriers and pins, tried on the golden model of the
-// whole card over its bus alone.
+// Tests of the statements about lines, direct moves, barriers and pins in docs/reference/behaviour.md, on the golden
+// model of the whole card, through its bus only.
 #include "reference_page.hpp"
 
 namespace trammel::reference_page {
 namespace {
 
-// LENGTH and COUNT that disagree: never more than COUNT, never less; the move takes the longer of the two.
+// LENGTH and COUNT that disagree: the axis makes exactly COUNT pulses, and the move takes the longer of the two.
 TEST(ReferencePage, LengthAndCountThatDisagree) {
   const auto run = [](std::uint32_t count, std::uint64_t length) {
     Host host;
@@ -19,7 +19,7 @@ TEST(ReferencePage, LengthAndCountThatDisagree) {
     const std::uint64_t last = host.pins.empty() ? begin : host.pins.back().tick;
     return std::make_pair(last - begin, host.card.cycles() - begin);
   };
-  // A pulse in 100 clocks: 1000 clocks have 10.
+  // A pulse per 100 clocks: 1000 clocks have 10.
   const auto [agree_last, agree_end] = run(10, 1000);
   EXPECT_LT(agree_last, 1100U);
   const auto [few_last, few_end] = run(4, 1000);
@@ -31,7 +31,7 @@ TEST(ReferencePage, LengthAndCountThatDisagree) {
   EXPECT_LT(agree_end, 1300U);
 }
 
-// Ties: half a pulse a tick puts every second tick exactly between two pulses.
+// Ties: at half a pulse per tick, every second tick is exactly between two pulses.
 TEST(ReferencePage, TiesOfLinesAndOfDirectMoves) {
   const auto ticks_of = [](std::int64_t increment) {
     Host host;
@@ -43,7 +43,7 @@ TEST(ReferencePage, TiesOfLinesAndOfDirectMoves) {
     for (const PathStep& step : host.path) ticks.push_back(step.tick);
     return ticks;
   };
-  // x_k = floor(1/2 + k / 2): steps up at the tie, steps down a tick after it.
+  // x_k = floor(1/2 + k / 2): steps up come at the tie, steps down one tick after it.
   EXPECT_EQ(ticks_of(kOnePulse / 2), (std::vector<std::uint64_t>{1, 3, 5, 7}));
   EXPECT_EQ(ticks_of(-kOnePulse / 2), (std::vector<std::uint64_t>{2, 4, 6, 8}));
   Host host;
@@ -57,8 +57,8 @@ TEST(ReferencePage, TiesOfLinesAndOfDirectMoves) {
   }
 }
 
-// Clocks without a tick at a barrier, at a tick a clock: two lines of 4 ticks with a step at the second one each would
-// have their steps 4 clocks apart.
+// Clocks without a tick at a barrier, at one tick per clock. Each of the two lines has 4 ticks and a step at the second
+// one, so that without the barrier the steps would be 4 clocks apart.
 TEST(ReferencePage, ABarrierOfNClocksStopsTheTicksForOverheadAndMaxOneN) {
   const auto gap = [](const driver::Command& barrier, unsigned axes) {
     Host host(8);
@@ -86,7 +86,7 @@ TEST(ReferencePage, ABarrierOfNClocksStopsTheTicksForOverheadAndMaxOneN) {
   }
 }
 
-// Pins of the modes, as axis 0 steps three pulses up and three down.
+// Levels of the pins in each mode while axis 0 makes three steps up and three down.
 TEST(ReferencePage, WhichPinIsWhich) {
   const auto pins = [](std::uint32_t mode) {
     Host host;

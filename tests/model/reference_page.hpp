@@ -1,4 +1,4 @@
-// What the tests of the reference pages share: includes, and short names.
+// Shared by the tests of the reference pages: includes and short names.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What docs/reference/behaviour.md says of accesses, refusals, START and recovery, tried on the golden model of the
-// whole card over its bus alone.
+// Tests of the statements about accesses, refusals, START and recovery in docs/reference/behaviour.md, on the golden
+// model of the whole card, through its bus only.
 #include "reference_page.hpp"
 
 namespace trammel::reference_page {
@@ -9,7 +9,7 @@ constexpr std::uint32_t refusal_of(Reason reason, std::uint32_t number, std::uin
   return static_cast<std::uint32_t>(reason) | number << 8 | address << 16;
 }
 
-// A path without its end: 10 ticks of line against 11 of feed at a barrier.
+// Ticks that do not match at a barrier: 10 ticks of line and 11 of feed.
 void make_fault(Host& host) {
   host.write(reg::kControl, field::kControlAbort);
   host.number = 0;
@@ -30,7 +30,7 @@ TEST(ReferencePage, AddressesBetweenWordsAreUnknown) {
   }
 }
 
-// Right after reset an access waits longest; with captures the most words are filled.
+// An access waits longest just after reset; a card with captures fills the most words.
 TEST(ReferencePage, TheFirstAccessIsAnsweredWithinAnswerClocks) {
   for (const unsigned axes : {1U, 4U, 5U, 8U}) {
     Host host(axes, model::RegisterFile::kMaxEngines);
@@ -63,7 +63,7 @@ TEST(ReferencePage, RefusalsOfTheStream) {
   EXPECT_TRUE(host.write(reg::kStream, 0x00030020));
   EXPECT_TRUE(host.write(reg::kControl, field::kControlFlush | field::kControlAbort));
   EXPECT_EQ(host.refusal(), 0U) << "the abort wins";
-  // Padding: a line of one axis has 8 halfwords, a DWELL 5 and one to fill.
+  // Padding must be 0: a line of one axis has 8 halfwords, a DWELL 5 and one of padding.
   EXPECT_TRUE(host.write(reg::kStream, 0x00030020));
   EXPECT_TRUE(host.write(reg::kStream, 0));
   EXPECT_FALSE(host.write(reg::kStream, 0x00010000));
@@ -107,7 +107,7 @@ TEST(ReferencePage, SettingsStayWritableInDirectMode) {
     EXPECT_TRUE(host.write(entry.address, host.read(entry.address))) << entry.name;
   }
   EXPECT_NE(host.read(reg::kStatus) & field::kStatusDirect, 0U);
-  // The next move's values may be written: this one has its own.
+  // The values of the next move may be written, because the running move has its own copy.
   host.direct(kOnePulse / 100, 3, 1000);
   host.idle();
   EXPECT_EQ(host.position(0), 0);
@@ -149,7 +149,7 @@ TEST(ReferencePage, AnswerTimeOfStart) {
     Host host;
     host.direct(0, 0, 1);
     host.clocks(300);
-    // Against a write that takes 4 clocks at the inner port.
+    // Compared with a write that takes 4 clocks at the inner port.
     const std::uint64_t begin = host.card.cycles();
     EXPECT_TRUE(host.write(reg::kStart, mask));
     const std::uint64_t start = host.card.cycles() - begin;

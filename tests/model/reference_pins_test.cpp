@@ -1,4 +1,5 @@
-// What the reference pages say of inputs, marks, barriers, counters and of several ports, tried on the golden model.
+// Tests of the statements about inputs, marks, barriers, counters and several ports in the reference pages, on the
+// golden model.
 #include <cstdlib>
 
 #include "core_bench.hpp"
@@ -10,9 +11,9 @@ namespace {
 
 using trammel::testing::CoreBench;
 
-constexpr unsigned kHigh = 1U << 5;  // of a condition
+constexpr unsigned kHigh = 1U << 5;  // bit of a condition: a high level
 
-// Inputs have no filter: a level that one rising edge sees ends a wait and trips a probe.
+// Without a filter, a level that is sampled at one rising clock edge ends a wait and trips a probe.
 TEST(ReferencePage, AnInputIsTakenAfterOneClock) {
   for (const bool probes : {false, true}) {
     CoreBench card;
@@ -34,7 +35,7 @@ TEST(ReferencePage, AnInputIsTakenAfterOneClock) {
   }
 }
 
-// No input, no silence and no reaction set for them raises the faults that are not built.
+// Faults of units that the card lacks are never raised, by any input, any silence or any STOP_REACTION.
 TEST(ReferencePage, NothingRaisesTheFaultsThatAreNotBuilt) {
   model::CardConfig config;
   config.inputs = 16;
@@ -51,7 +52,7 @@ TEST(ReferencePage, NothingRaisesTheFaultsThatAreNotBuilt) {
   EXPECT_NE(card.core.outputs().status & field::kStatusPathActive, 0U);
 }
 
-// Of each barrier that is sent once both queues have theirs.
+// The host sends a barrier once, and both queues get it.
 TEST(ReferencePage, ABarrierIsSentOnce) {
   CoreBench card;
   card.idle(300);
@@ -73,19 +74,19 @@ TEST(ReferencePage, ABarrierIsSentOnce) {
   expect_one_more();
 }
 
-// Clocks within which a pulse that waits at its axis is made, whatever its direction.
+// Longest time in clocks until a waiting pulse of an axis is made, in either direction.
 constexpr std::uint64_t longest_pulse(std::uint32_t length, std::uint32_t space, std::uint32_t hold,
                                       std::uint32_t setup) {
   return std::max(1U, length) + std::uint64_t{space} + hold + setup + 12;
 }
 
 struct AtMark {
-  std::int32_t missing;  // pulses that are not in the area
-  std::uint64_t clocks;  // from its time to the last leading edge
+  std::int32_t missing;  // pulses that the area lacks
+  std::uint64_t clocks;  // from the time of the area to the last leading edge
 };
 
-// A line of |steps| steps, backwards for negative ones, one in `gap` clocks, `dwell` clocks and a MARK; all times of
-// the axis are `time`.
+// A line of |steps| steps (backwards if negative) with a step per `gap` clocks, then `dwell` clocks and a MARK. All
+// times of the axis are `time`.
 AtMark at_mark(int steps, unsigned gap, std::uint32_t time, std::uint64_t dwell) {
   Host host(1);
   for (const std::uint32_t address : {reg::step_length(0), reg::step_space(0), reg::dir_setup(0), reg::dir_hold(0)})
@@ -107,8 +108,8 @@ AtMark at_mark(int steps, unsigned gap, std::uint32_t time, std::uint64_t dwell)
   return {std::abs(host.position(0) - latched), last > mark ? last - mark : 0};
 }
 
-// The step of the last tick is never in the MARK area, and with it at most four others that wait. Behind a dwell that
-// is long enough all are.
+// The MARK area always lacks the step of the last tick, and up to four other steps that wait. After a dwell that is
+// long enough it lacks none.
 TEST(ReferencePage, AMarkBehindALineLacksUpToFivePulses) {
   std::int32_t most = 0;
   for (const std::uint32_t time : {0U, 1U, 4U, 50U, 1000U}) {
@@ -130,7 +131,7 @@ TEST(ReferencePage, AMarkBehindALineLacksUpToFivePulses) {
   EXPECT_EQ(most, 5);
 }
 
-// POSITION is a counter of 32 bits: below 0 it goes on at 2^32 - 1.
+// POSITION is a counter of 32 bits: below 0 it continues at 2^32 - 1.
 TEST(ReferencePage, PositionsCountModulo2To32) {
   Host host(1);
   const auto move = [&host](std::int64_t by) {
@@ -189,8 +190,8 @@ std::vector<std::uint32_t> dwell_words(std::uint8_t number) {
   return trammel::testing::command_words(card_map::Opcode::Dwell, 0, number, 0, {});
 }
 
-// A flush by one port ends the other's command: the refusal is in the register of the port that flushed. The other port
-// is told by the refusal of its next word.
+// A flush by one port ends the command of the other port. The port that flushed gets the refusal in its register; the
+// other port is told by the refusal of its next word.
 TEST(ReferencePage, AFlushByAnotherPort) {
   TwoPorts card;
   ASSERT_TRUE(card.send(0, dwell_words(0)));
@@ -206,8 +207,8 @@ TEST(ReferencePage, AFlushByAnotherPort) {
   EXPECT_EQ(card.refusal(0), refusal(Reason::StreamClosed, 1, reg::kStream));
 }
 
-// An abort by one port drops the other's command without a refusal in either register. The other port's next word is
-// taken for a command's first one.
+// An abort by one port drops the command of the other port without a refusal in either register. The next word of the
+// other port is read as the first word of a command.
 TEST(ReferencePage, AnAbortByAnotherPort) {
   TwoPorts card;
   ASSERT_TRUE(card.send(0, dwell_words(0)));

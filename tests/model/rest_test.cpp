@@ -1,5 +1,5 @@
 // The area REST on the golden card: whatever runs and whenever a fault stops it, the positions are those of the ticks
-// that the path has taken, by the path's own steps, and no pulse comes after it.
+// taken, according to the steps of the path itself, and no pulse follows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-// A card on its way along a path, and the stop that is due in so many clocks.
+// A card that runs a path and stops after a given number of clocks.
 struct Bench : CoreBench {
   explicit Bench(std::uint32_t pulse) : CoreBench(all_engines()) {
     for (unsigned n = 0; n < 4; ++n) {
@@ -31,7 +31,7 @@ struct Bench : CoreBench {
   void stop_in(std::uint64_t clocks, bool ramp) {
     write(reg::kStopReaction, ramp ? field::kStopReactionWatchdog : 0);
     write(reg::kWatchdog, 1);
-    idle(2);  // the write has come to it
+    idle(2);  // the write reaches the watchdog
     core.state().motion.state().watchdog.state().left = clocks;
     idle(clocks);
     for (int i = 0; i < 10'000 && !core.state().motion.state().stop.stopped(); ++i) idle(1);
@@ -100,7 +100,8 @@ TEST(Rest, OnTheAccumulatorInEightDirections) {
 }
 TEST(Rest, OnTheArcGenerator) { at_any_moment(random_chords, 4); }
 
-// At rest an abort's REST is exact, too; in motion STATUS.settled says that it is not, and an idle card keeps the last.
+// REST of an abort is exact at rest too. In motion STATUS.settled says that it is not exact. An abort of an idle card
+// keeps the last REST.
 TEST(Rest, AnAbortsIsExactAtRest) {
   for (const bool hold : {true, false}) {
     std::mt19937_64 random(seed());

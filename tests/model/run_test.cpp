@@ -1,5 +1,5 @@
-// CoreModel::run() against clock(): the same random programs on two cores, one of which goes from step to step.
-// Outputs, positions, reported steps and all that follows are compared after waits of random length.
+// CoreModel::run() against clock(): the same random programs run on two cores, one of which jumps from step to step.
+// Outputs, positions and reported steps are compared after waits of random length.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ namespace {
 
 namespace reg = card_map::reg;
 
-// Filters, roles and their stops; pins change later.
+// Filters, roles and reactions to roles; the pins change later.
 void give_roles(Pair& pair, unsigned axes) {
   for (std::uint64_t n = pair.any(1, 5); n != 0; --n) {
     constexpr std::uint32_t kKinds[] = {0, 1, 4};
@@ -32,7 +32,7 @@ void give_roles(Pair& pair, unsigned axes) {
              static_cast<std::uint32_t>(pair.any(0, 200)));
 }
 
-// Ends that some of the steps to come pass; a third of the cards has none in force.
+// Ends that some of the following steps pass; on a third of the cards they are off.
 void give_soft_limits(Pair& pair, unsigned axes) {
   for (unsigned n = 0; n < axes; ++n) {
     pair.write(reg::soft_minus(n), static_cast<std::uint32_t>(-static_cast<std::int64_t>(pair.any(0, 6))));
@@ -41,7 +41,7 @@ void give_soft_limits(Pair& pair, unsigned axes) {
   pair.write(reg::kSoftLimits, static_cast<std::uint32_t>(pair.one_in(3) ? 0 : pair.any(1, 255)));
 }
 
-// Periods as short as a step's way, and some that no program sees the end of.
+// Some periods are as short as the way of a step, others longer than any program.
 void give_pulses(Pair& pair) {
   for (const std::uint32_t period : {reg::kPwmPeriod0, reg::kPwmPeriod1})
     pair.write(period, static_cast<std::uint32_t>(pair.one_in(3) ? pair.any(100, 700) : pair.any(500, 40'000)));
@@ -70,7 +70,7 @@ void disturb(Pair& pair) {
       pair.write(reg::kControl, card_map::field::kControlSnapshot);
       break;
     case 4: {
-      // A reset of a clock or more.
+      // A reset of one to three clocks.
       model::CoreModel::Inputs in;
       in.rst = true;
       for (std::uint64_t left = pair.any(1, 3); left != 0; --left) {
@@ -95,7 +95,7 @@ void disturb(Pair& pair) {
   }
 }
 
-// Random programs; what was compared.
+// Totals of the compared programs.
 struct Compared {
   std::uint64_t waits = 0;
   std::uint64_t steps = 0;
@@ -104,7 +104,7 @@ struct Compared {
   std::uint64_t marks = 0;
   std::uint64_t probed = 0;
   std::uint64_t underruns = 0;
-  std::uint64_t stopped_by_inputs = 0;  // cards
+  std::uint64_t stopped_by_inputs = 0;  // number of cards
   std::uint64_t stopped_by_soft_limits = 0;
 };
 
@@ -153,7 +153,7 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     const std::uint32_t marks = pair.clocked.read(reg::kMarks);
     EXPECT_EQ(pair.jumping.read(reg::kMarks), marks);
     compared.marks += marks;
-    // A probe that tripped has latched its time.
+    // A probe that has tripped has a time.
     compared.probed += pair.clocked.read(reg::time_lo(card_map::Area::Probe)) != 0 ? 1U : 0U;
     compared.underruns += pair.clocked.read(reg::kUnderruns);
     compared.clocks += pair.one_by_one / 2;
@@ -175,7 +175,7 @@ TEST(Run, EqualsClock) {
   EXPECT_GT(compared.probed, programs / 10);
 }
 
-// Jumps that end anywhere between a feed tick and the step of its path tick.
+// The jumps end at any clock between a feed tick and the step of its path tick.
 TEST(Run, EqualsClockOnArcsInChords) {
   const std::uint64_t programs = long_run() ? 1000 : 40;
   std::uint64_t steps = 0;
@@ -198,7 +198,7 @@ TEST(Run, EqualsClockOnArcsInChords) {
   EXPECT_GT(steps, 30 * programs);
 }
 
-// Holds and overrides so slow that most of the program is a ramp.
+// Holds and overrides with such a slow slew that most of the program is a ramp.
 TEST(Run, EqualsClockWhileTheRatioSlews) {
   const std::uint64_t programs = long_run() ? 1500 : 30;
   std::uint64_t steps = 0;
@@ -227,7 +227,7 @@ TEST(Run, EqualsClockWhileTheRatioSlews) {
   EXPECT_GT(on_ramps, 20'000 * programs);
 }
 
-// A jump that ends while a step waits for a reversal: a hold tick that has passed must count when the next one comes.
+// A jump ends while a step waits for a reversal. A wait tick that has passed must count when the next one comes.
 TEST(Run, EndsWhileAStepWaits) {
   unsigned faults = 0;
   for (std::uint64_t wait = 2000; wait < 3600; wait += 5) {

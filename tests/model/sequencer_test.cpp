@@ -1,5 +1,5 @@
-// The sequencers' model against the page's clocks: how fast lines follow each other, how long a dwell counts, that
-// every tick taken counts for path and piece alike.
+// The model of the sequencers against the documented clocks: how fast lines follow each other, how long a dwell lasts,
+// and that each tick taken counts for both the path and the piece.
 #include "trammel/model/sequencer.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Halfwords piece(std::uint64_t ticks, std::uint8_t piece_class = card_map::consta
 }
 Halfwords dwell(std::uint64_t clocks) { return command(Opcode::Dwell, 0, clocks, 0); }
 
-// A feed tick three clocks after each enable; the engines and axes never keep anything waiting.
+// A feed tick comes three clocks after each enable; the engines and axes are always ready.
 class Bench {
  public:
   Bench() : geometry_(4096), feed_(4096) {}
@@ -100,7 +100,7 @@ class Bench {
 TEST(Sequencer, ShortLinesFollowAsFastAsTheyAreDecoded) {
   for (unsigned axes = 1; axes <= 8; ++axes) {
     Bench bench;
-    // The first line waits for its piece: meanwhile the second one is decoded.
+    // The first line waits for its piece; meanwhile the second line is decoded.
     bench.queue(std::vector<Halfwords>(6, line_words(axes, 1)), {piece(6)});
     bench.run(500);
     ASSERT_EQ(bench.swaps.size(), 6U);
@@ -115,7 +115,7 @@ TEST(Sequencer, LongLinesFollowInTheClockOfTheLastTick) {
   bench.run(600);
   ASSERT_EQ(bench.swaps.size(), 2U);
   EXPECT_EQ(bench.ticks, 150U);
-  // Ticks begin some clocks after the piece and then come a clock each.
+  // Ticks begin some clocks after the piece, then one comes in each clock.
   EXPECT_GE(bench.swaps[1] - bench.pieces[0], 100U);
   EXPECT_LT(bench.swaps[1] - bench.pieces[0], 110U);
 }
@@ -155,7 +155,7 @@ TEST(Sequencer, BegunCountsBothQueues) {
   EXPECT_EQ(bench.mismatches, 0U);
 }
 
-// The class changes with the swap that makes a piece the one in force, and stays between pieces and at barriers.
+// The class changes with the swap that starts a piece, and stays between pieces and at barriers.
 TEST(Sequencer, TheClassIsThatOfThePieceInForce) {
   constexpr std::uint8_t kFeed = card_map::constant::kClassFeed;
   constexpr std::uint8_t kRapid = card_map::constant::kClassRapid;
@@ -169,7 +169,7 @@ TEST(Sequencer, TheClassIsThatOfThePieceInForce) {
     const Sequencer::Outputs& out = bench.sequencer.outputs();
     const std::uint8_t expected = bench.pieces.empty() ? kFeed : classes[bench.pieces.size() - 1];
     ASSERT_EQ(out.piece_class, expected) << clock;
-    // Moving: from the tick after which a piece has given one to the one that ends the last of those without a gap.
+    // `moving` is true from the first tick of a piece to the last tick of the last consecutive piece.
     const bool moved = bench.ticks != 0 && bench.ticks != 120 && bench.ticks != 240;
     ASSERT_EQ(out.moving, moved) << clock << ", " << bench.ticks << " ticks";
   }

@@ -1,5 +1,5 @@
-// Silent pieces on the golden card: a path whose first ticks are silent makes, from there on, the very steps that it
-// makes from its begin, whatever it runs on.
+// Silent pieces on the golden card. If the first ticks of a path are silent, its later steps are exactly those of the
+// whole path, on every engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct Bench : CoreBench {
   Bench() : CoreBench(all_engines()) {
     for (unsigned n = 0; n < 4; ++n) write(reg::step_length(n), 1);
   }
-  // Pieces first: the path's ticks, of which the first `silent` make no steps.
+  // Sends the pieces, then the path: its first `silent` ticks make no steps.
   void send(const Path& path, std::uint64_t silent) {
     if (silent != 0) {
       ASSERT_TRUE(feed(silent, kEveryClock, 0, 0, 1, kSilent));
@@ -75,8 +75,7 @@ void judge(const Path& path, std::uint64_t silent) {
   for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(late.positions()[n] + before[n], whole.positions()[n]) << "axis " << n;
 }
 
-// On a card that stands held the silent ticks go through, and nothing else does; the ratio rises from 0 when the hold
-// is taken back.
+// On a held card the silent ticks run and nothing else does. When the hold ends, the ratio rises from 0.
 void judge_held(const Path& path, std::uint64_t silent) {
   Bench whole;
   whole.run(path, 0);
@@ -114,8 +113,8 @@ TEST(SilentPieces, RunWhileTheCardStandsHeld) {
   }
 }
 
-// A program that was held in the middle of a path and dropped there goes on to the same end: the steps before and after
-// are those of the path that nobody held.
+// A program is held in the middle of a path and dropped there. Resumed with silent ticks it reaches the same end; the
+// steps before and after are those of the undisturbed path.
 void judge_again(const Path& path, std::uint64_t clocks) {
   Bench whole;
   whole.run(path, 0);
@@ -151,7 +150,7 @@ TEST(SilentPieces, HeldProgramGoesOnWithTheStepsOfTheUndisturbedPath) {
   }
 }
 
-// At ratios between 0 and 1 too.
+// Also at ratios between 0 and 1.
 TEST(SilentPieces, TakeAClockATickAtAnyRatio) {
   for (const std::uint32_t ratio : {0U, 1U, 0x8000U}) {
     Bench bench;
@@ -177,7 +176,7 @@ TEST(SilentPieces, PathGoesOnWithTheStepsThatItWouldHaveMade) {
   }
 }
 
-// A tick a clock, and the piece behind begins from rest once the last silent tick has gone through.
+// One tick per clock; the next piece starts from rest after the last silent tick.
 TEST(SilentPieces, TakeAClockATick) {
   Bench bench;
   constexpr std::uint64_t kTicks = 10'000;
@@ -193,7 +192,7 @@ TEST(SilentPieces, TakeAClockATick) {
   EXPECT_EQ(bench.steps.path.size(), 50U);
 }
 
-// The flag goes with each class, and with nothing that is none.
+// The flag is accepted with every class; flags without a meaning are refused.
 TEST(SilentPieces, FlagsAreRefusedThatHaveNoMeaning) {
   for (unsigned flags = 0; flags < 256; ++flags) {
     Bench bench;
@@ -205,7 +204,7 @@ TEST(SilentPieces, FlagsAreRefusedThatHaveNoMeaning) {
   }
 }
 
-// A fault in the silence of a held card stops it at once, and drops the rest.
+// A fault during the silent ticks of a held card stops it at once and drops the rest.
 TEST(SilentPieces, FaultEndsTheSilenceOfAHeldCard) {
   Bench bench;
   ASSERT_NO_FATAL_FAILURE(bench.hold());
@@ -222,7 +221,7 @@ TEST(SilentPieces, FaultEndsTheSilenceOfAHeldCard) {
   EXPECT_EQ(bench.taken, ticks);
 }
 
-// What is cut off in silence does not silence what follows.
+// A cut during silent ticks does not silence the following pieces.
 TEST(SilentPieces, CutEndsTheSilence) {
   for (std::uint64_t clocks = 0; clocks < 300; clocks += 3) {
     Bench bench;

@@ -1,7 +1,7 @@
-// Every adaptor of trammel::skip: n clocks at once leave the complete state that n calls of clock() leave, and no
-// output changes within the horizon. Blocks are driven into random states by random inputs; n is around the horizon's
-// border. A horizon that is one clock too long must be caught for each of them, and of adaptors whose horizons are
-// finite a clock more must be seen to go wrong at their very borders.
+// Every adaptor of trammel::skip: n clocks at once must leave the same complete state as n calls of clock(), and no
+// output may change within the horizon. Random inputs drive the blocks into random states; n is around the end of the
+// horizon. The test must detect a horizon that is one clock too long for each adaptor, and for adaptors with finite
+// horizons it must detect one further clock at the end of such a horizon.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 #include "trammel/skip/underrun_guard.hpp"
 
 namespace trammel::model {
-// A part without state() of its own: all that it shows.
+// SnapshotWriter has no state() of its own: compares its visible state.
 inline bool operator==(const SnapshotWriter& a, const SnapshotWriter& b) {
   return a.strobe() == b.strobe() && a.busy() == b.busy() && a.area() == b.area() && a.word() == b.word();
 }
@@ -30,7 +30,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-// Events one in `rare`, small and large numbers.
+// Events with probability 1 / `rare`; small and large numbers.
 template <class T>
 void fill(T& value, Random& random, unsigned rare) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -44,12 +44,12 @@ void fill(T& value, Random& random, unsigned rare) {
   }
 }
 
-// How often each was right, and whether one clock too many was seen.
+// Number of tested horizons, and of detected clocks beyond a horizon.
 struct Tally {
-  std::uint64_t finite = 0;  // horizons
+  std::uint64_t finite = 0;  // finite horizons
   std::uint64_t endless = 0;
   std::uint64_t caught = 0;
-  std::uint64_t borders = 0;  // of these behind a finite horizon
+  std::uint64_t borders = 0;  // those of `caught` at a finite horizon
 };
 
 template <class Block>
@@ -71,7 +71,7 @@ bool outputs_stay(const Block& block, const typename Block::Inputs& in, std::uin
   return true;
 }
 
-// `legal` makes inputs those that the block may get.
+// `legal` changes random inputs into inputs that the block may get.
 template <class Block, class Legal>
 void judge(Block block, unsigned rare, const Legal& legal, bool has_finite = false) {
   Random random(1);
@@ -107,7 +107,7 @@ void judge(Block block, unsigned rare, const Legal& legal, bool has_finite = fal
 
 const auto kAny = [](auto&, const auto&, Random&) {};
 
-// A target on the load bus that some block takes.
+// A load-bus target of some block.
 std::uint16_t some_target(Random& random) {
   namespace target = model::load_target;
   const unsigned all[] = {target::increment(1),  target::count(1), target::kPrescale,   target::kDeviation,
@@ -214,14 +214,14 @@ TEST(Skip, LimitCheck) {
       in.step = 0;
       in.clear = 0;
       in.setting.set = false;
-      // As after quiet clocks: the levels that were there.
+      // The levels as they were during the quiet clocks before.
       in.roles = {};
       in.roles.probe = in.roles.tool_setter = random() % 8 != 0;
     }
     in.setting.address = random() % 2 == 0 ? card_map::reg::kLimitOverride : card_map::reg::overtravel(1);
   });
 }
-// Positions around the ends, pulses seldom.
+// Positions around the ends; pulses are rare.
 TEST(Skip, SoftLimits) {
   judge(model::SoftLimits(5), 9, [](auto& in, const auto&, Random& random) {
     if (random() % 4 != 0) {
@@ -276,14 +276,14 @@ TEST(Skip, ButtonHold) { judge(model::ButtonHold(), 3, kAny); }
 TEST(Skip, Probe) {
   judge(model::Probe(), 9, [](auto& in, const auto&, Random& random) {
     in.load.target = some_target(random);
-    in.waits = random() % 16 != 0;  // long enough to be taken
+    in.waits = random() % 16 != 0;  // high long enough to take effect
   });
 }
 TEST(Skip, PathCommands) {
   judge(model::PathCommands({}), 9,
         [](auto& in, const auto&, Random& random) { in.load.target = some_target(random); });
 }
-// Periods that end within what is tried, and motion that comes and goes.
+// Periods that end within the tested clocks, and motion that starts and stops.
 TEST(Skip, PathCommandsWithPwm) {
   model::Pwm::Speed speed;
   judge(
@@ -312,7 +312,7 @@ TEST(Skip, InputPins) {
     in.setting.address = card_map::reg::kInputPolarity;
   });
 }
-// Levels change seldom, so that filters get to their ends.
+// Levels change rarely, so that filters reach their ends.
 TEST(Skip, InputFilter) {
   std::uint32_t levels = 0;
   judge(
@@ -413,7 +413,7 @@ TEST(Skip, RegisterFile) {
   });
 }
 TEST(Skip, Axi4LitePort) { judge(model::Axi4LitePort(), 3, kAny); }
-// The halfword that a fetch is about to take: a barrier's first one, a short count.
+// The halfword that a fetch is about to take: the first one of a barrier, or a short count.
 std::uint16_t word_for(const model::CommandFetch& fetch, Random& random) {
   const int index = fetch.state().arriving[1];
   if (index == 0)
@@ -440,7 +440,7 @@ std::uint16_t path_word(const model::CommandFetch& fetch, card_map::Opcode opcod
   return index == 1 ? static_cast<std::uint16_t>(random() % 100) : std::uint16_t{0};
 }
 
-// Paths under a feed: a clock that the adaptor counts ends in the state of clock().
+// Paths under a feed: each clock that the adaptor counts must end in the same state as clock().
 TEST(Skip, SequencerCounts) {
   Random random(1);
   model::Sequencer block;

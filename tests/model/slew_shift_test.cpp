@@ -1,4 +1,5 @@
-// Pieces that say how often SLEW is doubled, on the golden card: holds, overrides, under-runs, from piece to piece.
+// Pieces that double SLEW a number of times, on the golden card: holds, overrides, under-runs, and changes between
+// pieces.
 #include <gtest/gtest.h>
 
 #include "core_bench.hpp"
@@ -10,7 +11,7 @@ namespace reg = card_map::reg;
 
 constexpr std::uint64_t kTickIn16 = std::uint64_t{1} << 60;  // a tick in 16 clocks
 constexpr std::uint32_t kLowSlew = 1U << 14;                 // 65,536 clocks from 1 to 0
-constexpr std::uint64_t kFullRamp = std::uint64_t{1} << 30;  // divided by the slew: clocks from 1 to 0
+constexpr std::uint64_t kFullRamp = std::uint64_t{1} << 30;  // divided by SLEW: clocks from 1 to 0
 
 constexpr std::uint8_t piece_flags(unsigned shift, std::uint8_t piece_class = card_map::constant::kClassFeed) {
   return static_cast<std::uint8_t>(piece_class + shift * card_map::constant::kPieceDoubling);
@@ -26,13 +27,13 @@ struct ShiftBench : CoreBench {
                               {{"rate", kTickIn16}, {"floor", 1}, {"stop_distance", stop_distance}}));
   }
   std::uint32_t ratio() const { return core.outputs().ratio; }
-  // Clocks until the ratio is that.
+  // Clocks until the ratio is `wanted`.
   std::uint64_t until(std::uint32_t wanted) {
     std::uint64_t clocks = 0;
     for (; ratio() != wanted && clocks < 1'000'000; ++clocks) idle(1);
     return clocks;
   }
-  // Of a hold and of its end.
+  // Checks the ramps of a hold and of its end.
   void expect_ramps(unsigned shift) {
     const auto ramp = static_cast<double>(kFullRamp / kLowSlew >> shift);
     ASSERT_TRUE(write(reg::kHold, 1));
@@ -54,7 +55,7 @@ TEST(SlewShift, HoldsAndTheirEndsAreTheSooner) {
   }
 }
 
-// In the middle of a ramp, and with every class.
+// The shift changes with the piece, in the middle of a ramp.
 TEST(SlewShift, ChangesWithThePiece) {
   ShiftBench bench;
   constexpr std::uint64_t kTicks = 400;
@@ -109,8 +110,8 @@ TEST(SlewShift, IsNoneInADirectMove) {
   ASSERT_NO_FATAL_FAILURE(bench.expect_ramps(0));
 }
 
-// A card that is starved stands before its queues are empty, with the stop distance that its slew has; and that is not
-// much more than it needs.
+// A starved card comes to rest before its queues are empty if the stop distance fits its slew; this distance is not
+// much more than necessary.
 TEST(SlewShift, StopDistanceIsThatOfTheDoubledSlew) {
   for (unsigned shift = 0; shift <= card_map::constant::kMaxSlewShift; ++shift) {
     ShiftBench bench;

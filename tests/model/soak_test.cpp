@@ -1,7 +1,7 @@
-// Long random traffic on the golden core alone, with counters that begin near their ends: positions around 2^31 and
-// 2^32, the card's time around 2^32, 2^40 and 2^63. The judge counts pulses at the STEP and DIR pins and knows how many
-// pulses each line asks for; positions, ends of lines, FAULT and the time must be what follows from these.
-// TRAMMEL_LONG=N makes it N times as long (scripts/test --long soak), TRAMMEL_SEED another one.
+// Long random traffic on the golden core alone, with counters that start near their ends: positions around 2^31 and
+// 2^32, the time of the card around 2^32, 2^40 and 2^63. The test counts the pulses at the STEP and DIR pins and knows
+// the pulses of each line; positions, ends of lines, FAULT and the time must agree with these. TRAMMEL_LONG=N makes the
+// run N times as long (scripts/test --long soak); TRAMMEL_SEED selects another one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ model::CardConfig soak_config() {
 class Soak {
  public:
   explicit Soak(std::uint64_t seed) : bench(soak_config()), random(seed) {
-    bench.core.set_steps(nullptr);  // there would be 10^8 of them
+    bench.core.set_steps(nullptr);  // there would be 10^8 steps
     bench.after_clock = [this] {
       if (clock_by_clock) look();
     };
@@ -57,7 +57,7 @@ class Soak {
       clocks -= std::max<std::uint64_t>(gone, 1);
     }
   }
-  // Until the card is not busy, or 10^8 clocks have gone.
+  // Runs until the card is not busy, for at most 10^8 clocks.
   bool rests() {
     run(16);
     for (std::uint64_t left = 100'000'000; left > 0; left -= std::min<std::uint64_t>(left, 256)) {
@@ -67,7 +67,7 @@ class Soak {
     return false;
   }
 
-  // At rest: each position, and the time, some way below one of its ends.
+  // At rest: puts each position around one of its ends, and the time some clocks below one of its ends.
   void put_counters_near_their_ends() {
     auto& motion = bench.core.state().motion.state();
     for (unsigned n = 0; n < kSoakAxes; ++n) {
@@ -83,14 +83,14 @@ class Soak {
 
   CoreBench bench;
   std::mt19937_64 random;
-  std::array<std::uint32_t, kSoakAxes> expected{};  // positions by the lines, modulo 2^32
-  std::array<std::uint32_t, kSoakAxes> counted{};   // by the edges at the pins, where clock by clock
+  std::array<std::uint32_t, kSoakAxes> expected{};  // positions according to the lines, modulo 2^32
+  std::array<std::uint32_t, kSoakAxes> counted{};   // according to the edges at the pins, while clock_by_clock is set
   std::uint64_t pulses = 0;                         // of all lines
-  std::uint64_t edges = 0;                          // at STEP pins, clock by clock
-  bool clock_by_clock = false;                      // to be changed at rest alone
+  std::uint64_t edges = 0;                          // at STEP pins, while clock_by_clock is set
+  bool clock_by_clock = false;                      // may change at rest only
 
  private:
-  // STEP and DIR as a drive sees them: a pulse at STEP's rising edge.
+  // Watches STEP and DIR as a drive does: a pulse at each rising edge of STEP.
   void look() {
     const auto& out = bench.core.outputs();
     const std::uint32_t rising = out.step & ~step_;
@@ -105,8 +105,8 @@ class Soak {
   std::uint32_t step_ = 0;
 };
 
-// Lines of up to 2,000 pulses, 14 ticks apart at least, so that steps catch up behind a change of DIR; and the pieces
-// of their ticks.
+// Lines of up to 2,000 pulses with at least 14 ticks per pulse, so that steps catch up after a change of DIR; then the
+// pieces for their ticks.
 void send_lines(Soak& soak) {
   std::uint64_t ticks = 0;
   for (std::uint64_t lines = 1 + soak.below(4); lines != 0; --lines) {
@@ -136,7 +136,7 @@ void send_lines(Soak& soak) {
   }
 }
 
-// What a host or a button does to the time of a path, which must not show in its steps.
+// Actions of a host or a button that change the time of a path; they must not change its steps.
 void disturb_time(Soak& soak) {
   soak.run(soak.below(20'000));
   switch (soak.below(4)) {

@@ -1,4 +1,4 @@
-// The soft limits by their rules: which pulse is a cause, how soon, what may be cleared, and which axis is named.
+// The rules of the soft limits: which pulse is a cause, how soon, when it may be cleared, and which axis is named.
 #include "trammel/model/soft_limits.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ struct Guarded {
     in.back = static_cast<std::uint8_t>(towards == Towards::Minus ? in.back | bit : in.back & ~bit);
     moves[axis] = towards == Towards::Minus ? ~std::uint32_t{0} : 1U;
   }
-  // Whether it was a cause.
+  // True when the pulse was a cause.
   bool pulse(unsigned axis, Towards towards) {
     const std::size_t before = caused.size();
     begin_pulse(axis, towards);
@@ -113,7 +113,7 @@ TEST(SoftLimits, TheFirstAxisIsNamed) {
   EXPECT_EQ(limits.block.limit_state(), field::kLimitStateSoftPlus | 3U << field::kLimitStateSoftAxisShift);
 }
 
-// From any position a range that ends less than 2^31 pulses away is judged right, across the carry of 2^32 too.
+// A range that ends less than 2^31 pulses away is judged correctly from any position, also across the carry of 2^32.
 TEST(SoftLimits, PositionsWrap) {
   constexpr std::int64_t kFar = (std::int64_t{1} << 31) - 2;
   for (const std::uint32_t here : {0U, 5U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU, 0xFFFFFFF0U}) {
@@ -131,14 +131,14 @@ TEST(SoftLimits, PositionsWrap) {
   }
 }
 
-// Axes as fast as shapers let them be, on both sides of their ends: a pulse that ends too far out is a cause in time,
-// and there is no other cause.
+// Axes at the highest rate of the shapers, on both sides of their ends. Each pulse that ends beyond an end is a cause
+// in time, and there is no other cause.
 void every_pulse_is_judged(unsigned axes) {
   constexpr std::int64_t kEnd = 6;
   Guarded limits(axes);
   for (unsigned n = 0; n < axes; ++n) limits.range(n, -kEnd, kEnd);
   limits.set(reg::kSoftLimits, (1U << axes) - 1);
-  const std::uint64_t latest = limits.block.round() + 2;  // from the position to the cause; FAULT comes a clock later
+  const std::uint64_t latest = limits.block.round() + 2;  // from the position to the cause; FAULT: one clock later
   std::mt19937_64 random(axes);
   std::vector<unsigned> since(axes, 20);
   std::vector<Towards> directions(axes, Towards::Plus);
@@ -147,7 +147,7 @@ void every_pulse_is_judged(unsigned axes) {
   for (unsigned i = 0; i < 200'000; ++i) {
     for (unsigned n = 0; n < axes; ++n) {
       const auto at = static_cast<std::int32_t>(limits.in.position[n]);
-      // Mostly back when it is far out.
+      // Far outside, the axis mostly turns back.
       const bool turns = random() % 8 == 0 || std::abs(at) > kEnd + 5;
       const Towards inwards = at > 0 ? Towards::Minus : Towards::Plus;
       const Towards towards = turns                ? inwards
@@ -166,7 +166,7 @@ void every_pulse_is_judged(unsigned axes) {
       ASSERT_FALSE(due.empty()) << "clock " << i << ": no pulse was too far";
       ++beyond;
     }
-    // One judgement may be for several pulses of its axis.
+    // One cause may stand for several pulses of its axis.
     while (!due.empty() && limits.now >= due.front() + latest) {
       const auto in_time = [&](std::uint64_t at) { return at > due.front() + 1 && at <= due.front() + latest; };
       ASSERT_TRUE(std::any_of(limits.caused.rbegin(), limits.caused.rend(), in_time)) << "clock " << i;

@@ -1,5 +1,5 @@
-// The SPI port's model: bytes both ways in modes 0 and 3, and how late MISO is, by which the page tells the fastest
-// SCK.
+// The model of the SPI port: bytes in both directions in modes 0 and 3, and the delay of MISO, from which the
+// documentation derives the fastest SCK.
 #include "trammel/model/spi_port.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class SpiBench {
       if (port.outputs().byte_valid) received.push_back(port.outputs().byte);
     }
   }
-  // Two clocks each half of SCK; the master takes its bit at the rising edge.
+  // Each half of SCK takes two clocks; the master samples at the rising edge.
   std::vector<std::uint8_t> exchange(bool mode3, const std::vector<std::uint8_t>& bytes, unsigned bits_of_last = 8) {
     std::vector<std::uint8_t> back;
     clocks(mode3, true, false, 6);
@@ -51,7 +51,7 @@ TEST(SpiPort, BytesBothWays) {
   for (const bool mode3 : {false, true}) {
     SpiBench bench;
     EXPECT_EQ(bench.exchange(mode3, {1, 0xA5, 0xFF}), (std::vector<std::uint8_t>{0xC0, 0x80, 0x81}));
-    // The byte that was loaded at the end of an exchange comes first in the next.
+    // A byte that was loaded at the end of an exchange comes first in the next exchange.
     EXPECT_EQ(bench.exchange(mode3, {7}), std::vector<std::uint8_t>{0x82});
     EXPECT_EQ(bench.received, (std::vector<std::uint8_t>{1, 0xA5, 0xFF, 7}));
   }
@@ -75,16 +75,16 @@ TEST(SpiPort, SckForOthersIsNothing) {
   EXPECT_EQ(bench.exchange(false, {9}), std::vector<std::uint8_t>{0xC0});
 }
 
-// A level that the clock sees first at its edge n shows at MISO after edge n + 2: the bit is there 2 to 3 clocks after
-// SCK rose.
+// An SCK level that is first sampled at clock edge n appears at MISO after edge n + 2: the bit comes 2 to 3 clocks
+// after SCK rose.
 TEST(SpiPort, MisoIsTwoToThreeClocksLate) {
   SpiBench bench;
   bench.clocks(false, true, false, 6);
   bench.clocks(false, false, false, 6);
-  EXPECT_TRUE(bench.port.outputs().miso);  // C0
+  EXPECT_TRUE(bench.port.outputs().miso);  // the first bit of 0xC0
   bench.clocks(true, false, false, 2);
   bench.clocks(false, false, false, 2);
-  bench.clocks(true, false, false, 2);  // the second rising edge was seen at the first of these
+  bench.clocks(true, false, false, 2);  // the first of these clocks samples the second rising edge
   EXPECT_TRUE(bench.port.outputs().miso);
   bench.clocks(true, false, false, 1);
   EXPECT_FALSE(bench.port.outputs().miso);

@@ -1,4 +1,4 @@
-// The step shaper's golden model, judged by a checker that sees its pins alone.
+// The golden model of the step shaper, judged by a checker that sees only its pins.
 #include "trammel/model/step_shaper.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ StepShaper::Inputs times(unsigned length, unsigned space, unsigned setup, unsign
   return in;
 }
 
-// Watches STEP and DIR (mode 0, with polarity) and checks every time and the position.
+// Watches STEP and DIR (mode 0, any polarity) and checks all times and the position.
 class PinChecker {
  public:
   explicit PinChecker(const StepShaper::Inputs& set) : set_(set) {}
@@ -79,7 +79,8 @@ class PinChecker {
   std::deque<bool> order_;
 };
 
-// Random steps, never more than wait for a place; then until idle. Every accepted step becomes one pulse, in order.
+// Random steps, never more than the shaper has places for, until it is idle. Each accepted step becomes one pulse, in
+// order.
 void judge_pins(StepShaper::Inputs in, unsigned steps, std::mt19937& random) {
   StepShaper shaper;
   PinChecker pins(in);
@@ -103,7 +104,7 @@ TEST(StepShaper, KeepsRandomTimes) {
     const auto time = [&random, top] { return static_cast<unsigned>(random() % top); };
     StepShaper::Inputs in = times(time(), time(), time(), time());
     in.mode = static_cast<std::uint8_t>(random() % 4 << 2);
-    // Inverted pins are seen inverted from the first clock on.
+    // Inverted pins must be inverted from the first clock on.
     judge_pins(in, 60, random);
     if (HasFatalFailure()) return;
   }
@@ -118,7 +119,7 @@ TEST(StepShaper, KeepsLargestTimes) {
   }
 }
 
-// Up/down and quadrature decoded from the pins alone.
+// The pins alone, decoded as up/down or quadrature, give the position.
 TEST(StepShaper, UpDownAndQuadratureDecodeToThePosition) {
   std::mt19937 random(3);
   for (std::uint8_t mode = 0; mode < 16; ++mode) {
@@ -175,7 +176,8 @@ TEST(StepShaper, WaitingFromOneHoldTickToTheNextIsAFault) {
   for (const bool waits : {false, true}) {
     StepShaper shaper;
     StepShaper::Inputs in = times(waits ? 400 : 20, 0, 0, 0);
-    // The second step waits for some 400 clocks: wait ticks at 10, 110, 210, 310, each but the first is late.
+    // The second step waits for about 400 clocks, with wait ticks at 10, 110, 210 and 310; all but the first are
+    // faults.
     unsigned faults = 0;
     for (unsigned i = 0; i < 1000; ++i) {
       in.step = i < 2;

@@ -1,4 +1,4 @@
-// The stop control by its rules: what each event does in each state, and when it shows.
+// The rules of the stop control: the effect of each event in each state, and the clock in which it shows.
 #include "trammel/model/stop_control.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace trammel::model {
 namespace {
 
-// Nothing changes while these stay.
+// True when nothing changes while these inputs stay.
 bool rests(const trammel::model::StopControl& stop, bool moving, bool fixed, bool at_rest) {
   trammel::model::StopControl::Inputs in;
   in.moving = moving;
@@ -67,14 +67,14 @@ TEST(StopControl, NothingHappensByItself) {
   }
 }
 
-// Clocks until the cut shows, nothing moving; 0 where it shows already.
+// Clocks until the cut while nothing moves; 0 if the cut is already visible.
 int clocks_to_cut(StopControl& stop) {
   int clocks = 0;
   for (; !stop.outputs().cut && clocks < 100; ++clocks) stop.clock(none());
   return clocks;
 }
-// From the first clock of a stop: its snapshot's request begins the count anew, and the cut shows a clock after its
-// end.
+// Clocks from the first clock of a stop to the cut. The request of its snapshot restarts the count, and the cut comes
+// one clock after the count ends.
 constexpr int kToCut = StopControl::kSettleClocks + 2;
 
 TEST(StopControl, AnImmediateEventShutsTheGateAClockLaterAndCutsWhenNothingMoves) {
@@ -268,7 +268,7 @@ constexpr Course kFeedPiece{true, false, false};
 constexpr Course kFixedPiece{true, true, false};
 constexpr Course kFixedAtRest{true, true, true};
 
-// Clocks with these pieces; whether it holds after the last.
+// Clocks with these pieces; true when the card holds after the last one.
 bool holds(StopControl& stop, const Course& course, int clocks = 2) {
   for (; clocks != 0; --clocks) {
     StopControl::Inputs in;
@@ -283,7 +283,7 @@ bool holds(StopControl& stop, const Course& course, int clocks = 2) {
 TEST(StopControl, AHoldWaitsForTheEndOfFixedPieces) {
   StopControl stop;
   EXPECT_FALSE(holds(stop, kFixedPiece));
-  stop.clock(set(reg::kHold, 1));  // nothing moves in this clock, but the hold is not there yet
+  stop.clock(set(reg::kHold, 1));  // nothing moves in this clock, but the hold is not active yet
   EXPECT_FALSE(holds(stop, kFixedPiece, 1000));
   EXPECT_TRUE(rests(stop, true, true, false));
   EXPECT_FALSE(rests(stop, true, false, false));
@@ -302,7 +302,7 @@ TEST(StopControl, AHoldAtRestStaysWhateverBegins) {
     EXPECT_TRUE(holds(stop, rest, 40));
     EXPECT_TRUE(rests(stop, rest.moving, rest.fixed, rest.at_rest));
     EXPECT_TRUE(holds(stop, kFixedPiece, 50));
-    // Taken back and set again it begins anew.
+    // A hold that is cleared and set again starts again.
     stop.clock(set(reg::kHold, 0));
     EXPECT_FALSE(holds(stop, kFixedPiece));
     stop.clock(set(reg::kHold, 1));

@@ -1,5 +1,5 @@
-// From a cause to the last pulse, on the golden model of the whole card: the table of latencies in
-// docs/reference/behaviour.md, whose rows are made here and must stand on the page as they are.
+// From a cause to the last pulse on the golden model of the whole card. The test makes the rows of the latency table in
+// docs/reference/behaviour.md; the page must contain exactly these rows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,13 +17,13 @@ namespace {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr unsigned kStepEvery = 17;         // clocks; every relation to a scan of 64 comes in 64 steps
+constexpr unsigned kStepEvery = 17;         // clocks; 64 consecutive steps cover all phases of a scan of 64 clocks
 constexpr std::uint32_t kSlew = 0x40'0000;  // 256 clocks from full ratio to rest
 constexpr std::uint64_t kRamp = (std::uint64_t{1} << 30) / kSlew;
 constexpr std::uint32_t kPin = 1U << 5;
 constexpr std::int32_t kEnd = 30;  // soft limit, pulses
 
-// A card with its first axis on a long line forwards, and nothing that would stop it.
+// A card with its first axis on a long forward line and without a condition that stops it.
 CoreBench moving_card(std::uint64_t later = 0) {
   model::CardConfig config;
   config.axes = 2;
@@ -48,7 +48,7 @@ CoreBench moving_card(std::uint64_t later = 0) {
 }
 
 struct Latency {
-  std::uint64_t latch = 0;  // the longest, in clocks
+  std::uint64_t latch = 0;  // longest, in clocks
   std::uint64_t hold = 0;
   std::uint64_t last_pulse = 0;
   std::uint64_t rest = 0;
@@ -61,7 +61,7 @@ struct Latency {
   }
 };
 
-// From here on; `begins` (0: now) is how many clocks later the cause comes.
+// Measures from now on, or from `begins` clocks later if the cause comes then.
 Latency measured(model::CoreModel core, std::uint32_t pins, std::uint64_t begins = 0) {
   Latency found;
   std::uint32_t position = core.position(0);
@@ -80,7 +80,7 @@ Latency measured(model::CoreModel core, std::uint32_t pins, std::uint64_t begins
   return found;
 }
 
-// At each clock of a scan in each relation to the steps.
+// At each clock of a scan, in each phase of the steps.
 Latency by_pin(std::uint32_t role, std::uint32_t reaction) {
   CoreBench bench = moving_card();
   EXPECT_TRUE(bench.write(reg::kStopReaction, reaction));
@@ -94,10 +94,10 @@ Latency by_pin(std::uint32_t role, std::uint32_t reaction) {
   return longest;
 }
 
-// From the pulse that goes too far.
+// From the pulse beyond the soft limit.
 Latency by_soft_limit(std::uint32_t reaction) {
   Latency longest;
-  for (unsigned later = 0; later < 8; ++later) {  // in each clock of a round
+  for (unsigned later = 0; later < 8; ++later) {  // each clock of a round
     CoreBench bench = moving_card();
     bench.write(reg::kStopReaction, reaction);
     bench.idle(later);
@@ -108,7 +108,7 @@ Latency by_soft_limit(std::uint32_t reaction) {
   return longest;
 }
 
-// From the end of a time of one unit, in each relation to the steps.
+// From the end of a time of one unit, in each phase of the steps.
 Latency by_silence(std::uint32_t address, std::uint32_t reaction) {
   Latency longest;
   for (unsigned later = 0; later < kStepEvery; ++later) {
@@ -116,7 +116,7 @@ Latency by_silence(std::uint32_t address, std::uint32_t reaction) {
     EXPECT_TRUE(bench.write(reg::kStopReaction, reaction));
     bench.idle(later);
     bench.write(address, 1);
-    // The link's time ends with a unit of the time counter.
+    // The time of the link ends with a unit of the time counter.
     const std::uint64_t now = bench.core.cycles();
     constexpr std::uint64_t kUnit = 65'536;
     const std::uint64_t end = address == reg::kWatchdog ? now + kUnit : (now / kUnit + 2) * kUnit;

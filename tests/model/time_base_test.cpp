@@ -26,7 +26,7 @@ std::uint64_t run(TimeBase& base, std::uint64_t clocks, bool hold = false, std::
   return enables;
 }
 
-// Two clocks, one for each setting.
+// Takes two clocks, one for each setting.
 void set(TimeBase& base, std::uint32_t target, std::uint32_t slew) {
   base.clock({false, {true, card_map::reg::kSlew, slew}});
   base.clock({false, {true, card_map::reg::kRatioFeed, target}});
@@ -36,7 +36,7 @@ bool arrived(const TimeBase& base, bool hold, std::uint8_t piece_class = card_ma
   return skip::TimeBaseAhead(base).clocks_ahead({hold, {}, piece_class}) == skip::kForever;
 }
 
-// A time base whose ratio is `ratio`, after an odd number of clocks.
+// A time base with this ratio, after an odd number of clocks.
 TimeBase at_ratio(std::uint32_t ratio) {
   TimeBase base;
   set(base, ratio, 0xFFF'FFFF);
@@ -56,7 +56,7 @@ TEST(TimeBase, EveryClockIsEnabledFromReset) {
 TEST(TimeBase, EnablesAreTheFlooredProductInEveryClock) {
   for (const std::uint32_t ratio : {0U, 1U, 3U, 0x5EB8U, 0x8000U, 0xFFFFU, kWhole}) {
     TimeBase base = at_ratio(ratio);
-    // A whole turn of the phase from 0 on: no ratio gives an enable at phase 0 but the whole.
+    // A whole cycle of the phase from 0 on; at phase 0 only the full ratio gives an enable.
     const std::uint64_t first = skip::TimeBaseAhead(base).enabled_in(1);
     const std::uint64_t in_a_turn = run(base, 0x10000);
     EXPECT_EQ(in_a_turn, ratio) << "first " << first;
@@ -86,7 +86,7 @@ TEST(TimeBase, GapsBetweenEnablesDifferByOneClock) {
 TEST(TimeBase, SlewIsLinearAndEndsOnTheTarget) {
   constexpr std::uint32_t kSlew = 0x1357;
   TimeBase base = at_ratio(0x1000);
-  // The goal is sampled every 4th clock and its first move is seen 4 clocks later.
+  // The goal is sampled every 4th clock, and its first move is visible 4 clocks later.
   set(base, 0xC000, kSlew);
   std::uint64_t waited = 0;
   TimeBase probe = base;
@@ -128,14 +128,14 @@ TEST(TimeBase, HoldGoesToZeroAndComesBack) {
   EXPECT_EQ(before, 0xABCDU);
 }
 
-// From 1 to 0 at a constant slew: half as many enables as clocks, whatever the slew.
+// A hold from 1 to 0 at a constant slew takes half as many enables as clocks, at any slew.
 TEST(TimeBase, AHoldTakesTheTriangleOfItsSlew) {
   for (const std::uint32_t slew : {0x1000U, 0x7777U, 0x10'0001U}) {
     TimeBase base;
     set(base, kWhole, slew);
     std::uint64_t enables = 0;
     while (!arrived(base, true)) enables += run(base, 1, true);
-    // Sum over updates of 4 clocks at 1 - i * slew; up to 8 whole clocks go by before the first move.
+    // Sum over updates of 4 clocks at 1 - i * slew; up to 8 clocks at full ratio pass before the first move.
     const double updates = 268435456.0 / slew;
     EXPECT_NEAR(static_cast<double>(enables), 2 * updates, 12) << "slew " << slew;
   }
@@ -149,7 +149,8 @@ TEST(TimeBase, AZeroSlewKeepsTheRatio) {
   EXPECT_EQ(skip::TimeBaseAhead(base).clocks_ahead(inputs(false)), skip::kForever);
 }
 
-// Each doubling doubles what an update moves by, from the update after the next on; one beyond 28 bits is not made.
+// Each shift doubles the move per update, from the update after the next on. A doubling that would exceed 28 bits is
+// left out.
 TEST(TimeBase, AShiftDoublesTheSlew) {
   for (std::uint8_t shift = 0; shift < 4; ++shift) {
     for (const std::uint32_t slew : {1U, 0x777U, 0x12345U, 0x1FF'FFFFU, 0x300'0001U, 0x600'0001U, 0xFFF'FFFFU}) {
@@ -157,7 +158,7 @@ TEST(TimeBase, AShiftDoublesTheSlew) {
       for (unsigned i = 0; i < shift && 2 * step < 1U << 28; ++i) step *= 2;
       TimeBase base;
       set(base, kWhole, slew);
-      run(base, 38, false, shift);  // 40 clocks
+      run(base, 38, false, shift);  // with the two clocks of set(): 40 clocks
       run(base, 5, true, shift);
       for (std::uint64_t updates = 1; updates < 300; ++updates) {
         const std::uint64_t gone = std::min<std::uint64_t>(updates * step, 1U << 28);
@@ -168,7 +169,7 @@ TEST(TimeBase, AShiftDoublesTheSlew) {
   }
 }
 
-// A piece with another shift: the update that is under way is its predecessor's, the next one its own.
+// A piece with another shift: the update in progress uses the shift of the previous piece, the next one its own.
 TEST(TimeBase, AShiftCountsFromTheSecondUpdate) {
   constexpr std::uint32_t kSlew = 0x10000;
   TimeBase base;
@@ -186,7 +187,7 @@ TEST(TimeBase, AShiftCountsFromTheSecondUpdate) {
   EXPECT_EQ(base.outputs().ratio, kWhole - 0xB0);
 }
 
-// From one class to another the ratio goes as after an override: linear, and to the new class's ratio exactly.
+// Between classes the ratio changes as after an override: linearly, and exactly to the ratio of the new class.
 TEST(TimeBase, AChangeOfClassSlewsToItsRatio) {
   constexpr std::uint32_t kSlew = 0x2468;
   constexpr std::uint32_t kRatios[] = {0x3000, 0xC000, 0x8001};
@@ -202,7 +203,7 @@ TEST(TimeBase, AChangeOfClassSlewsToItsRatio) {
       in_class(base, from, 40);
       ASSERT_EQ(base.outputs().ratio, kRatios[from]);
       base.clock({false, {true, card_map::reg::kSlew, kSlew}, from});
-      in_class(base, from, 7);  // 52 clocks: the goal is sampled in the next one
+      in_class(base, from, 7);  // 52 clocks so far: the goal is sampled in the next one
       const std::int64_t start = std::int64_t{kRatios[from]} << 12;
       const std::int64_t goal = std::int64_t{kRatios[to]} << 12;
       in_class(base, to, 4);
@@ -218,8 +219,8 @@ TEST(TimeBase, AChangeOfClassSlewsToItsRatio) {
   }
 }
 
-// Anywhere on a ramp, at all slews: so far as it is known ahead, enables, their clocks and the state at the end are
-// those of clock().
+// Anywhere on a ramp, at all slews: within clocks_ahead() the enables, their clocks and the final state are those of
+// clock().
 TEST(TimeBase, ARampAheadAgreesWithClocks) {
   std::mt19937_64 random(11);
   std::uint64_t ahead = 0;
@@ -258,7 +259,7 @@ TEST(TimeBase, ARampAheadAgreesWithClocks) {
   EXPECT_GT(ahead, 1'000'000U);
 }
 
-// What the under-run guard sees of the ratio stays, and it is not 0 unless it was.
+// Within clocks_ahead() the ratio as the under-run guard sees it does not change, and does not become 0.
 TEST(TimeBase, ARampAheadStaysInItsPart) {
   for (const std::uint32_t slew : {1U, 37U, 0x1000U, 0x2'0001U}) {
     TimeBase base;
@@ -296,7 +297,7 @@ TEST(TimeBase, AdvanceAndItsInverseAgreeWithClocks) {
       EXPECT_EQ(run(probe, needed - 1), enables - 1);
       EXPECT_EQ(run(probe, 1), 1U);
     }
-    // A change after it finds the same place within the update.
+    // A later change must find both at the same clock of the update.
     set(clocked, 0x3000, 0x12'3456);
     set(skipped, 0x3000, 0x12'3456);
     for (int k = 0; k < 24; ++k) {

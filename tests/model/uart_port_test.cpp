@@ -1,4 +1,4 @@
-// The serial port's model: measured rates, the times of bits out and in by their closed form.
+// The model of the serial port: measured rates, and the times of sent and received bits in closed form.
 #include "trammel/model/uart_port.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class UartBench {
   void hold(bool rx, unsigned clocks) {
     for (unsigned i = 0; i < clocks; ++i) clock(rx);
   }
-  // A byte, its k-th edge at k/8 periods, rounded as asked.
+  // Sends a byte; its k-th edge is at k/8 periods, rounded with `rounding`.
   void send(std::uint8_t byte, unsigned period, unsigned rounding = 4) {
     const unsigned bits = 0x200U | unsigned{byte} << 1;
     unsigned edge = 0;
@@ -58,7 +58,7 @@ TEST(UartPort, MeasuresAfterABreakAlone) {
     ASSERT_EQ(bench.received.size(), 52U);
     for (unsigned i = 0; i < 52; ++i) ASSERT_EQ(bench.received[i], 5 * i);
     bench.received.clear();
-    // Another rate than the one measured is not taken for a new one.
+    // Bytes at another rate do not change the measured rate.
     bench.send(0x55, 2 * period);
     EXPECT_EQ(bench.port.period(), period);
     bench.hold(true, 2000);
@@ -74,7 +74,7 @@ TEST(UartPort, ARateTooHighIsNotTaken) {
   EXPECT_EQ(bench.port.period(), 64U);
 }
 
-// The host's clock may be off by 4 % (4 Mbaud at 100 MHz: 25 clocks a bit).
+// The clock of the host may be off by 4 % (4 Mbaud at 100 MHz: 25 clocks per bit).
 TEST(UartPort, ToleratesARateThatIsOff) {
   for (const unsigned period : {192U, 208U}) {
     UartBench bench;
@@ -86,7 +86,7 @@ TEST(UartPort, ToleratesARateThatIsOff) {
   }
 }
 
-// The k-th bit begins at the whole part of k/8 periods after the start bit.
+// The k-th bit begins floor(k/8 periods) after the start bit.
 TEST(UartPort, BitsLeaveAtTheirTimes) {
   for (const unsigned period : {64U, 87U, 201U, 333U}) {
     UartBench bench;
@@ -114,7 +114,7 @@ TEST(UartPort, ABreakIsTold) {
     bench.clock(i >= 1023 && i < 1030);
     breaks += bench.port.outputs().restart ? 1U : 0U;
   }
-  EXPECT_EQ(breaks, 1U);  // the first stretch is a clock too short, the second one break however long
+  EXPECT_EQ(breaks, 1U);  // the first low phase is one clock too short; the second one is one break, however long
 }
 
 }  // namespace

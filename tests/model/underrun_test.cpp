@@ -1,7 +1,7 @@
-// Under-run hold on the golden card: programs that are starved at random never use up what is queued before they stand,
-// make the same steps at the same path ticks as without starvation, and do not chatter. Stop distances come from the
-// formula of the reference page (docs/reference/behaviour.md), counts of queued ticks from what was sent and the card's
-// ticks.
+// Under-run hold on the golden card. Programs that starve at random never use up the queued ticks before they are at
+// rest, make the same steps at the same path ticks as without starvation, and do not chatter. Stop distances come from
+// the formula of the reference page (docs/reference/behaviour.md), counts of queued ticks from the commands sent and
+// the ticks of the card.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,16 +21,16 @@ namespace {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr double kFullSlew = 1 << 29;  // SLEW of a stop that takes as long as 2 clocks at full ratio
+constexpr double kFullSlew = 1 << 29;  // T_s in clocks is kFullSlew / SLEW
 
 struct Piece {
   std::uint64_t ticks;
-  double from;  // ticks a clock
+  double from;  // ticks per clock
   double to;
   std::uint32_t stop_distance;
 };
 
-// Sends a program and counts what is queued: sent, less the ticks that the card shows.
+// Sends a program and counts the queued ticks: those sent minus the ticks of the card.
 class Starved {
  public:
   explicit Starved(const model::CardConfig& config = {}) : bench(config) {}
@@ -77,8 +77,8 @@ class Starved {
   std::uint64_t pieces = 0;
   std::uint64_t taken = 0;
   bool ends_at_rest = false;
-  bool ran_dry = false;              // nothing was queued any more, though the last piece did not end at rest
-  std::vector<std::uint64_t> holds;  // where they began
+  bool ran_dry = false;              // the queues ran empty although the last piece did not end at rest
+  std::vector<std::uint64_t> holds;  // clocks in which a hold began
 
  private:
   void watch() {
@@ -92,16 +92,16 @@ class Starved {
   bool was_held_ = false;
 };
 
-// A program: pieces of all rates, one after the other at speed, the last one to a stop; lines under them.
+// A program: pieces of all rates with matching speeds, the last one to a stop; and the lines that they cover.
 struct RandomPieces {
   std::vector<Piece> pieces;
   std::vector<std::uint64_t> lines;
-  double stop_clocks;  // from full ratio to rest, half of it: T_s
+  double stop_clocks;  // T_s: half the clocks from full ratio to rest
   std::uint32_t slew;
   std::uint32_t ratio;
 };
 
-// S = ceil(T_s * the largest rate in the piece and in all that follows within T_s).
+// S = ceil(T_s * the largest rate in the piece and in all following pieces within T_s).
 void give_stop_distances(RandomPieces& program, double share) {
   for (std::size_t i = 0; i + 1 < program.pieces.size(); ++i) {
     double fastest = 0;
@@ -148,7 +148,8 @@ std::vector<std::int64_t> increments(std::size_t line) {
   return {kOnePulse / 7 + n * 1234567, -kOnePulse / 11 + n * 7654321};
 }
 
-// `wait` gives the clocks before each command. A piece comes before the first line that it covers, or any time before.
+// `wait` returns the clocks before each command. A piece comes before the first line that it covers, or any time
+// earlier.
 template <class Wait>
 void run(Starved& card, const RandomPieces& program, std::uint64_t ahead, const Wait& wait) {
   card.bench.write(reg::kSlew, program.slew);
@@ -175,7 +176,7 @@ std::uint64_t clocks_of(const RandomPieces& program) {
   return static_cast<std::uint64_t>(clocks);
 }
 
-// Command, tick, axis, direction of each step: all but the time.
+// Command, tick, axis and direction of each step, without the time.
 std::vector<std::tuple<std::uint64_t, std::uint64_t, unsigned, int>> path_of(const Starved& card) {
   std::vector<std::tuple<std::uint64_t, std::uint64_t, unsigned, int>> path;
   for (const auto& [command, tick, axis, direction, cycle] : card.bench.steps.path)
@@ -194,7 +195,7 @@ Outcome starve(std::uint64_t cases, double share) {
     SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " case " + std::to_string(i));
     std::mt19937_64 random(seed() * 1'000'003 + i);
     const RandomPieces program = random_program(random, share);
-    // All pieces first, or each right before the first line that it covers.
+    // All pieces first, or each piece right before the first line that it covers.
     const std::uint64_t ahead = random() % 2 == 0 ? 0 : 1'000'000'000;
     Starved plenty;
     run(plenty, program, ahead, [] { return std::uint64_t{0}; });
@@ -222,11 +223,11 @@ TEST(Underrun, NeverRunsDryAndStaysOnThePath) {
   EXPECT_GT(outcome.holds, 40U);
 }
 
-// The judge above can fail: stop distances of a hundredth are too short.
+// The test above can fail: a hundredth of the stop distances is too short.
 TEST(Underrun, RunsDryWhereStopDistancesAreTooShort) { EXPECT_GT(starve(40, 0.01).dry, 1U); }
 
-// A stream of one piece at a tick every fourth clock over lines of 1,000 ticks, that goes on (stop distance 4,000: a
-// stop from full ratio takes as much) or ends at rest.
+// A stream of one piece with a tick every fourth clock, over lines of 1,000 ticks. The piece either goes on (its stop
+// distance of 4,000 is exactly a stop from full ratio) or ends at rest.
 class Directed : public ::testing::Test {
  protected:
   static constexpr double kRate = 0.25;
@@ -253,7 +254,7 @@ class Directed : public ::testing::Test {
   std::uint32_t ratio() const { return card.bench.core.outputs().ratio; }
   bool busy() const { return (status() & field::kStatusBusy) != 0; }
   std::uint32_t underruns() { return card.bench.read(reg::kUnderruns); }
-  // As long as it takes to run `ticks` at full ratio.
+  // Clocks for `ticks` at full ratio.
   void run(std::uint64_t ticks) { card.clock(static_cast<std::uint64_t>(static_cast<double>(ticks) / kRate)); }
 
   Starved card;
@@ -271,7 +272,8 @@ TEST_F(Directed, NothingQueuedIsNoUnderrun) {
   EXPECT_EQ(underruns(), 0U);
 }
 
-// From rest a piece waits for twice what a stop from the present ratio takes, and shows it; that is no under-run.
+// From rest, a piece waits until twice the stop from the present ratio is queued. STATUS shows the wait, which is not
+// counted as an under-run.
 TEST_F(Directed, APieceFromRestWaitsForEnough) {
   lines(8);
   goes_on(1'000'000);
@@ -286,8 +288,8 @@ TEST_F(Directed, APieceFromRestWaitsForEnough) {
   EXPECT_EQ(underruns(), 0U);
 }
 
-// It begins to hold where the formula says, within a round of the guard; stands with ticks left; goes on by itself when
-// there is twice a stop.
+// The hold begins where the formula says, within a round of the guard. The machine comes to rest with ticks left, and
+// continues by itself when twice a stop is queued.
 TEST_F(Directed, HoldsWhereTheFormulaSaysAndGoesOnAlone) {
   lines(10);
   goes_on(1'000'000);
@@ -308,7 +310,7 @@ TEST_F(Directed, HoldsWhereTheFormulaSaysAndGoesOnAlone) {
   EXPECT_EQ(underruns(), 1U);
 }
 
-// A bus of half the speed: each hold runs until twice a stop is queued, so there is one for each such amount at most.
+// A bus of half the speed: each hold lasts until twice a stop is queued, so there is at most one hold per such amount.
 TEST_F(Directed, DoesNotChatter) {
   lines(10);
   goes_on(1'000'000);
@@ -321,7 +323,7 @@ TEST_F(Directed, DoesNotChatter) {
   EXPECT_LT(underruns(), 210'000U / kStop);
 }
 
-// The end of a program is none: it takes the very clocks that it takes without the engine.
+// The end of a program is not an under-run: it takes exactly the same clocks as without the engine.
 std::uint64_t clocks_to_the_end(Starved& card) {
   card.clock(20);
   while ((card.bench.core.outputs().status & field::kStatusBusy) != 0) card.clock(1);
@@ -340,7 +342,7 @@ TEST_F(Directed, TheEndOfAProgramIsNone) {
   Starved without(config_without(card_map::engines::kUnderrunHold));
   without.bench.write(reg::kSlew, static_cast<std::uint32_t>(kFullSlew * kRate / kStop));
   whole_program(without);
-  // Its first piece waits for a round of the guard.
+  // The first piece waits for a round of the guard.
   const std::uint64_t without_clocks = clocks_to_the_end(without);
   EXPECT_GE(clocks, without_clocks);
   EXPECT_LE(clocks, without_clocks + 64);
@@ -348,7 +350,7 @@ TEST_F(Directed, TheEndOfAProgramIsNone) {
   EXPECT_TRUE(path_of(card) == path_of(without));
 }
 
-// All pieces are queued, the last one ends at rest, but the paths end before: they count.
+// All pieces are queued and the last one ends at rest, but the paths end earlier: their end counts.
 TEST_F(Directed, PathsThatEndBeforeTheirPiecesCount) {
   goes_on(20'000);
   ends(1000);
@@ -362,7 +364,7 @@ TEST_F(Directed, PathsThatEndBeforeTheirPiecesCount) {
   EXPECT_FALSE(busy());
 }
 
-// So do they in a piece that ends at rest itself: the stop distance of the piece before goes on.
+// The same in a piece that itself ends at rest: the stop distance of the previous piece still applies.
 TEST_F(Directed, PathsThatEndBeforeTheLastPieceCount) {
   lines(10);
   goes_on(9000);
@@ -376,7 +378,7 @@ TEST_F(Directed, PathsThatEndBeforeTheLastPieceCount) {
   EXPECT_FALSE(busy());
 }
 
-// A barrier that was sent is the end of what is before it, whatever the pieces say.
+// A barrier that was sent ends the ticks before it, regardless of the pieces.
 TEST_F(Directed, ABarrierIsAnEnd) {
   for (const auto opcode : {card_map::Opcode::Dwell, card_map::Opcode::End}) {
     lines(5);
@@ -411,7 +413,7 @@ TEST_F(Directed, NotInDirectMode) {
   EXPECT_EQ(status() & field::kStatusUnderrun, 0U);
   card.bench.idle(30'000);
   EXPECT_FALSE(busy());
-  // What a direct move took is not taken from the queues.
+  // Ticks of a direct move are not subtracted from the queues.
   lines(9);
   goes_on(9000);
   card.clock(200);
@@ -419,7 +421,7 @@ TEST_F(Directed, NotInDirectMode) {
   EXPECT_TRUE(busy());
 }
 
-// A host's hold beside it: both must end before it goes on.
+// Together with a hold of the host: motion continues only when both holds have ended.
 TEST_F(Directed, BesideAHostsHold) {
   lines(10);
   goes_on(1'000'000);
@@ -459,7 +461,7 @@ TEST_F(Directed, AnAbortEndsIt) {
   EXPECT_EQ(underruns(), 1U);
 }
 
-// More will not come where a queue is full: it goes on as fast as what is queued allows, and is through.
+// No more commands can come when a queue is full, so the card continues as fast as the queued ticks allow.
 TEST_F(Directed, AFullQueueGoesOn) {
   model::CardConfig config;
   config.geometry_depth = 200;  // 13 lines of 2 axes

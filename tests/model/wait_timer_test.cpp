@@ -1,4 +1,4 @@
-// The wait timer's model: a tick in every `limit` clocks, whatever the limit was before.
+// The model of the wait timer: one tick in every `limit` clocks, regardless of the limit before.
 #include "trammel/model/wait_timer.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ TEST(WaitTimer, TicksOnceInEachLimit) {
   for (const std::uint32_t limit : {1U, 2U, 3U, 300U, 65535U}) {
     WaitTimer timer;
     timer.clock({true, card_map::reg::kHoldLimit, limit});
-    // The clock of the setting counted already, against the limit of reset.
+    // The clock of the setting counts already, with the limit after reset.
     for (std::uint32_t clocks = 2; clocks <= 4 * limit; ++clocks) {
       timer.clock({});
       EXPECT_EQ(timer.tick(), clocks % limit == 0) << limit << " " << clocks;

@@ -1,4 +1,4 @@
-// The watchdog by its rule: it expires so many clocks after the last write.
+// The rule of the watchdog: it expires a given time after the last write.
 #include "trammel/model/watchdog.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 Setting units(std::uint32_t time) { return {true, card_map::reg::kWatchdog, time}; }
 
-// Clocks until it has expired, counted from the write; `longest` where it has not by then.
+// Clocks from the write until it expires; `longest` if it has not expired by then.
 std::uint64_t clocks_to_expiry(Watchdog& watchdog, std::uint64_t longest) {
   std::uint64_t clocks = 1;
   for (; clocks < longest && !watchdog.expired(); ++clocks) watchdog.clock({});

@@ -1,4 +1,4 @@
-// TwoWords, which hosts without a 128-bit type use, against the compiler's own.
+// TwoWords, for hosts without a 128-bit type, against the 128-bit type of the compiler.
 #include "trammel/model/wide.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ uint128 native(TwoWords words) {
   return uint128{static_cast<std::uint64_t>(words >> 64)} << 64 | static_cast<std::uint64_t>(words);
 }
 
-// Numbers of every length, and those around the borders of the words.
+// Numbers of every length, and numbers around the borders of the words.
 struct Numbers {
   std::mt19937_64 random{1};
   TwoWords next() {

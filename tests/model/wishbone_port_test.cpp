@@ -1,4 +1,4 @@
-// The Wishbone port's model: cycle numbers of the page, answers, masters that give up.
+// The model of the Wishbone port: the documented clocks, answers, and masters that give up.
 #include "trammel/model/wishbone_port.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace {
 
 using trammel::model::WishbonePort;
 
-// A core that answers so many clocks after its request.
+// A core that answers a given number of clocks after its request.
 struct Core {
   explicit Core(unsigned clocks, bool refuses = false) : after(clocks), error(refuses) {}
   unsigned after;
@@ -36,7 +36,7 @@ TEST(WishbonePort, AClassicReadAndItsClocks) {
   in.adr = 0x40;
   for (unsigned clock = 0; clock < 20; ++clock) {
     const WishbonePort::Outputs& out = port.outputs();
-    EXPECT_EQ(out.request, clock % 8 == 1) << clock;  // STB stays: the next access
+    EXPECT_EQ(out.request, clock % 8 == 1) << clock;  // STB stays high: the next access
     EXPECT_EQ(out.ack, clock == 7 || clock == 15) << clock;
     if (out.ack) {
       EXPECT_EQ(out.dat, 0x1000 + core.addresses.size());
@@ -84,7 +84,7 @@ TEST(WishbonePort, ARefusalIsAnError) {
   }
 }
 
-// Gives up in every clock of an access in turn; what it asks for next has its own answer and no other.
+// The master gives up in each clock of an access in turn; its next access gets its own answer and no other.
 TEST(WishbonePort, GivenUpIsNotAnswered) {
   for (const bool pipelined : {false, true}) {
     for (unsigned when = 1; when < 6; ++when) {

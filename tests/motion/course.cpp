@@ -12,7 +12,7 @@ double magnitude(const Vector& v) {
   return std::sqrt(sum);
 }
 
-// The length by which the path counts, from what each axis moves along it in mm.
+// The length of the path for feeds and corners, from the mm that each axis moves.
 double counted_length(const Vector& mm, const machine::Machine& machine, bool& spatial) {
   Vector in_space{};
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
@@ -28,14 +28,14 @@ Course line_course(const Path& path, const machine::Machine& machine) {
   double coarsest = 0;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     const double per_tick = static_cast<double>(path.line->increment[a]) * 0x1p-40;
-    // Limits hold on the path before its ends were rounded, each by half a pulse.
+    // Limits apply to the path before its ends were rounded, each by up to half a pulse.
     course.pulses_a_tick[a] = std::max(0.0, std::abs(per_tick) - 1 / static_cast<double>(path.ticks));
     mm[a] = std::round(per_tick * static_cast<double>(path.ticks)) / machine.axes[a].steps_per_mm;
     if (mm[a] != 0 || is_spatial(machine.axes[a])) coarsest = std::max(coarsest, 1 / machine.axes[a].steps_per_mm);
   }
   course.length = counted_length(mm, machine, course.spatial);
   for (std::size_t a = 0; a < mm.size(); ++a) course.entry[a] = course.exit[a] = mm[a] / course.length;
-  // Each end is off by half a pulse an axis, by half of sqrt(3) pulses across the path.
+  // Each end is off by up to half a pulse per axis, which is half of sqrt(3) pulses across the path.
   course.error = std::sqrt(3) * coarsest / course.length;
   return course;
 }
@@ -48,24 +48,24 @@ Course arc_course(const Path& path, const machine::Machine& machine) {
   const double unit = std::exp2(arc.m - 40);  // pulses
   const double turn = arc.clockwise ? -1 : 1;
   const double chord = 2 * std::asin(std::exp2(-(arc.k + 1)));
-  // Y half a chord later, at the start.
+  // The state of Y is half a chord late; this computes Y at the start.
   const double x = static_cast<double>(arc.x) * unit;
   const double y = (static_cast<double>(arc.y) * unit + turn * std::sin(chord / 2) * x) / std::cos(chord / 2);
   const double radius = std::hypot(x, y);
   const double sweep = chord * static_cast<double>(arc.path_ticks) * std::exp2(-arc.m);
-  const double path_ticks = static_cast<double>(arc.prescale) * 0x1p-40;  // a feed tick
-  const double speed = radius * chord * std::exp2(-arc.m) * path_ticks;   // pulses a feed tick
+  const double path_ticks = static_cast<double>(arc.prescale) * 0x1p-40;  // per feed tick
+  const double speed = radius * chord * std::exp2(-arc.m) * path_ticks;   // pulses per feed tick
   Vector mm{};
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     const double per_tick = static_cast<double>(arc.increment[a]) * 0x1p-40;
     mm[a] = per_tick * static_cast<double>(arc.path_ticks) / machine.axes[a].steps_per_mm;
     course.pulses_a_tick[a] = std::abs(per_tick) * path_ticks;
   }
-  // As of a line: each end may have been moved along the arc by half a pulse's diagonal, and off its circle.
+  // As for a line: rounding may have moved each end along the arc by half the diagonal of a pulse, and off its circle.
   const double least = std::max(0.0, 1 - 2 * std::sqrt(0.5) / (radius * sweep));
   course.pulses_a_tick[arc.axis_x] = course.pulses_a_tick[arc.axis_y] = speed * least;
   const double in_plane = radius * sweep / scale;
-  mm[arc.axis_x] = in_plane;  // any direction in the plane will do for the length
+  mm[arc.axis_x] = in_plane;  // the length is the same for any direction in the plane
   course.length = counted_length(mm, machine, course.spatial);
   course.plane_share = in_plane / course.length;
   course.curvature = scale / (radius + std::sqrt(0.5));
@@ -93,7 +93,8 @@ ArcReading::ArcReading(const driver::ArcChordCommand& arc) : arc_(arc), x_(arc.x
   axes_[0].end = axes_[1].end = 1;
 }
 
-// The axis's next increment: from its first tick up to a chord's end, half a chord for y; then for whole chords.
+// The next increment of the axis. The one after the first tick lasts to the end of a chord, for Y of half a chord; the
+// following ones last a whole chord.
 void ArcReading::turn(unsigned axis) {
   Axis& one = axes_[axis];
   one.place += one.increment * (one.end - one.begin);
@@ -110,9 +111,9 @@ void ArcReading::turn(unsigned axis) {
 }
 
 std::array<double, 2> ArcReading::at(double path_ticks) {
-  // Both in the order of time: each half chord starts from the other's.
+  // Both axes in the order of time, because each half chord starts from the state of the other axis.
   for (;;) {
-    // y goes first where both end with the first tick, and at half chords; x at whole ones.
+    // Y goes first after the first tick, where both increments end, and at half chords; X goes first at whole chords.
     const unsigned next = axes_[1].end <= axes_[0].end ? 1 : 0;
     if (axes_[next].end > path_ticks) break;
     turn(next);

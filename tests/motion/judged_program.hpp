@@ -1,4 +1,4 @@
-// Programs that are planned and run for the judge of motion, and machines for them.
+// Programs that are planned and run for the judge of motion, and their machines.
 #pragma once
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ inline run::ProgramLines text(const std::string& program) {
   };
 }
 
-// Limits so high that a clock of 1 MHz is no limit, and steps short enough.
+// The default machine with these limits on each axis, in mm/s, mm/s^2 and mm/s^3; a jerk of 0 is no limit.
 inline machine::Machine machine_of(double velocity, double acceleration, double jerk) {
   machine::Machine machine = machine::default_machine();
   for (machine::MachineAxis& axis : machine.axes) {
@@ -78,10 +78,10 @@ inline machine::Machine machine_of(double velocity, double acceleration, double 
   return machine;
 }
 
-// mm/s, mm/s^2, mm/s^3: a fast machine within what a clock of 1 MHz can do.
+// A fast machine that a clock of 1 MHz can still drive: 300 mm/s, 3000 mm/s^2, jerk in mm/s^3.
 inline machine::Machine fast_machine(double jerk) { return machine_of(300, 3000, jerk); }
 
-// What integers cost; at corners, what rounded ends do to directions.
+// The margins above 1 are for integers and, at corners, for the directions of rounded ends.
 inline void expect_within_limits(const MotionVerdict& verdict) {
   EXPECT_LE(verdict.velocity.share, 1.001) << "command " << verdict.velocity.command;
   EXPECT_LE(verdict.acceleration.share, 1.001) << "command " << verdict.acceleration.command;
@@ -93,7 +93,7 @@ inline void expect_within_limits(const MotionVerdict& verdict) {
   EXPECT_GT(verdict.updates, 0U);
 }
 
-// A zigzag of short lines in a cube, with feeds that change.
+// A zigzag of short lines in a cube, with changing feeds.
 inline std::string random_lines(unsigned seed, bool other_axis = false) {
   std::mt19937 random(seed);
   std::string program = "G21 G90 G94\n";
@@ -112,7 +112,7 @@ inline std::string random_lines(unsigned seed, bool other_axis = false) {
   return program + "M2\n";
 }
 
-// A program's commands and its planned seconds, nothing run.
+// The commands of a program and its planned seconds; nothing runs.
 struct Planned final : driver::CommandSink {
   Planned(gcode::LineSource& lines, const machine::Machine& machine, std::uint32_t clock_hz, double feed_scale = 1) {
     gcode::ReaderOptions options;

@@ -28,8 +28,8 @@ class Judge {
 
   void interval(const Interval& now) {
     if (now.begins_path) enter(now);
-    // Path and rate do not change in the same clock: borders of pieces are at whole ticks, and a piece goes on for some
-    // clocks after its last one. Until then the new path is run at the rates of the piece before.
+    // Path and rate do not change in the same clock: pieces end at whole ticks, and the rate of a piece continues for
+    // some clocks after its last tick. During these clocks the new path runs at the rates of the previous piece.
     if (now.begins_piece) piece_clock_ = now.clock;
     handing_over_ =
         !resting_ &&
@@ -54,7 +54,7 @@ class Judge {
   MotionVerdict verdict;
 
  private:
-  // Ticks a clock^2, as the piece has it: its floor may cut an update short.
+  // Ticks per clock^2, as the piece commands it; the floor of the piece may cut an update short.
   static double acceleration(const Interval& now) { return static_cast<double>(now.acceleration) * 0x1p-64 / kUpdate; }
   static double rate(const Interval& now) { return static_cast<double>(now.rate) * 0x1p-48; }
 
@@ -82,7 +82,7 @@ class Judge {
     }
   }
 
-  // Of a straight path's limits, at a rate of 1 and changes of 1.
+  // Shares of the limits that a straight path uses, at a rate of 1 and at changes of 1.
   struct Shares {
     double velocity = 0;
     double acceleration = 0;
@@ -99,7 +99,7 @@ class Judge {
     return most;
   }
 
-  // Of an arc's plane axes: radians a clock at a tick rate, and pulses a clock^2 towards the centre.
+  // For the plane axes of an arc: radians per clock at a tick rate, and pulses per clock^2 towards the centre.
   double turn_rate(std::size_t axis, double speed) const {
     if (course_.curvature == 0 || (axis != course_.plane[0] && axis != course_.plane[1])) return 0;
     return course_.pulses_a_tick[axis] * speed * course_.curvature / scale(axis);
@@ -108,7 +108,7 @@ class Judge {
     return course_.pulses_a_tick[axis] * speed * turn_rate(axis, speed);
   }
 
-  // The rate from which a motion may begin, and with which it may end, on the path that it is on.
+  // The highest rate with which a motion may start or stop on the current path.
   double floor() const { return floor(course_); }
   double floor(const Course& course) const {
     double allowed = INFINITY;
@@ -121,8 +121,8 @@ class Judge {
     return allowed;
   }
 
-  // First and last rate of a motion: rates are those of an update's middle, and the last may come an update and, since
-  // pieces have whole ticks, a tick early.
+  // Checks the first and the last rate of a motion. A rate is that of the middle of its update, and the last rate may
+  // come one update and, because pieces have whole ticks, one tick early.
   void at_rest(const Interval& now) {
     const double gain = std::abs(static_cast<double>(now.gain)) * 0x1p-48;
     const double tick = resting_ ? 0 : 2 * std::max(gain, std::abs(acceleration(last_)) * kUpdate) / kUpdate;
@@ -137,11 +137,12 @@ class Judge {
     const double gain = static_cast<double>(now.gain) * 0x1p-48;
     const double most = std::max(before * change, after);
     const double rest = std::max(floor(course_), floor(last_course_) * change);
-    const bool stop = most <= 2 * rest;  // and a start
+    const bool stop = most <= 2 * rest;  // also at a start
     const double allowed =
         std::abs(gain) + std::abs(acceleration(last_)) * kUpdate * change + 0.001 * most + (stop ? rest : 0);
     double jump = std::abs(after - before);
-    // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
+    // At the end of a path the ticks per mm may change together with the rate. This change is known as well as the
+    // rounded lengths are.
     if (new_path) {
       const double scaled = before * mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
       const double least = scaled * (1 - last_course_.error) / (1 + course_.error);
@@ -156,8 +157,8 @@ class Judge {
     }
   }
 
-  // Of ticks a mm, from the path before to this one, where a piece begins with it. Where rounded lengths leave it open
-  // whether there is one, the rates tell.
+  // Ratio of the ticks per mm of this path to those of the previous one, if a piece begins with the path. If the
+  // rounded lengths do not show whether the density changes, the rates decide.
   double density_change(const Interval& now) const {
     if (!now.begins_piece) return 1;
     const double change = mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
@@ -182,8 +183,8 @@ class Judge {
     corner_waits_ = !resting_;
   }
 
-  // Speed through a corner against what the rules allow for the least turn that rounded ends leave; a corner that
-  // allows no speed is passed at the floor.
+  // Compares the speed through a corner with what the rules allow for the smallest turn that the rounded ends leave
+  // possible. A corner that allows no speed is passed at the floor.
   void corner(const Interval& now) {
     corner_waits_ = false;
     const double at_floor = floor(last_course_) + 1.5 * std::abs(acceleration(before_)) * kUpdate;
@@ -206,18 +207,20 @@ class Judge {
     }
     ++verdict.corners;
     const double scale = limits_.clock_hz * mm_a_tick(last_course_, before_) * (1 - last_course_.error);  // mm/s
-    // Half an update, and a tick of the ramp to the corner, may be left.
+    // Half an update, and one tick of the ramp to the corner, may be missing.
     const double gain = std::abs(acceleration(before_)) * kUpdate;
     const double most_rate = std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate) + gain / 2;
     double share = rate(before_) / std::max(most_rate, at_floor);
-    // A way of X Y Z below a pulse may be hidden in the other: then it is no stop, but no axis may jump.
+    // The rounded other path may contain a move of X Y Z below a pulse. Then the corner is no stop, but no axis may
+    // jump.
     if (last_course_.spatial != course_.spatial) share = std::min(share, jump(now, true));
     verdict.corner.look(share, now.path->command);
   }
 
-  // Axes outside X Y Z, or `all`, may jump by sqrt(a d); rounded ends may hide half a pulse of each path.
+  // Jump of speed of the axes outside X Y Z, or of `all` axes. A jump of sqrt(a d) is allowed; rounded ends may hide
+  // half a pulse of each path.
   double jump(const Interval& now, bool all) const {
-    const double ticks_before = limits_.clock_hz * rate(before_);  // a second
+    const double ticks_before = limits_.clock_hz * rate(before_);  // per second
     const double ticks_after = density_change(now) == 1 ? ticks_before : limits_.clock_hz * rate(now);
     double share = 0;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
@@ -239,7 +242,7 @@ class Judge {
 
   double scale(std::size_t axis) const { return limits_.machine.axes[axis].steps_per_mm; }
 
-  // The largest acceleration in the direction that no axis's limit forbids, mm/s^2.
+  // The largest acceleration in this direction that keeps the limit of each axis, mm/s^2.
   double strongest(const Vector& direction) const {
     double squares = 0;
     for (const double x : direction) squares += x * x;
@@ -252,20 +255,20 @@ class Judge {
   }
 
   const MotionLimits& limits_;
-  Vector velocity_{};      // pulses a clock
-  Vector acceleration_{};  // a clock^2
-  Vector jerk_{};          // a clock^3; 0: no limit
+  Vector velocity_{};      // pulses per clock
+  Vector acceleration_{};  // pulses per clock^2
+  Vector jerk_{};          // pulses per clock^3; 0: no limit
   Course course_;
   Shares at_one_;
   Course last_course_;
   bool resting_ = true;
   Interval last_;
-  Interval before_;                // the last one on the path before
-  std::uint64_t path_clock_ = 0;   // of this path's first clock
-  std::uint64_t piece_clock_ = 0;  // of this piece's
-  bool started_ = true;            // this path, from rest
+  Interval before_;                // the last interval of the previous path
+  std::uint64_t path_clock_ = 0;   // first clock of this path
+  std::uint64_t piece_clock_ = 0;  // first clock of this piece
+  bool started_ = true;            // this path starts from rest
   bool handing_over_ = false;
-  bool corner_waits_ = false;  // for the rate with which the path goes on
+  bool corner_waits_ = false;  // waits for the rate with which the path continues
 };
 
 }  // namespace

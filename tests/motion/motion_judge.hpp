@@ -1,7 +1,7 @@
-// A second reading of the motion: from the commands that go to the card alone, it rebuilds in integers what each axis
-// does from update to update of the feed generator, and holds it against the machine's limits. It knows neither
-// planner nor golden model: the feed generator's and the generators' arithmetic is read anew from
-// docs/reference/behaviour.md.
+// An independent reading of the motion. It reconstructs in integers, from the commands to the card alone, what each
+// axis does from update to update of the feed generator, and compares it with the limits of the machine. It uses
+// neither the planner nor the golden model: it implements the arithmetic of the feed generator and of the generators
+// anew from docs/reference/behaviour.md.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct MotionLimits {
   double junction_deviation = 0.01;  // mm
 };
 
-// A quantity at its worst: how many times its limit, and the geometry command (from 0) where that was.
+// The worst value of a quantity, as a multiple of its limit, and the geometry command (from 0) where it occurs.
 struct Worst {
   double share = 0;
   std::size_t command = 0;
@@ -31,29 +31,28 @@ struct Worst {
   }
 };
 
-// What a motion needs of what it is allowed: nothing above 1 but for what integers cost.
+// Shares of the limits that a motion uses. All are at most 1 except for the effects of integers.
 struct MotionVerdict {
-  Worst velocity;           // of an axis; of max_velocity
-  Worst acceleration;       // of an axis, tangential and centripetal together; of max_acceleration
-  Worst jerk;               // of an axis, along the path and across it; of max_jerk. 0 where no axis has one
-  Worst acceleration_jump;  // at borders of pieces, beyond two updates' jerk; of max_acceleration
-  Worst rate_jump;          // at borders of pieces; of two updates' acceleration plus 0.1 % of the rate
-  Worst rest;               // first and last rate at a stop; of the floor's rule
-  Worst corner;             // speed through a corner; of what the rules for corners allow there
-  std::size_t corners = 0;  // judged
+  Worst velocity;           // of an axis, relative to max_velocity
+  Worst acceleration;       // of an axis, tangential and centripetal together, relative to max_acceleration
+  Worst jerk;               // of an axis, along and across the path, relative to max_jerk; 0 if no axis has one
+  Worst acceleration_jump;  // at ends of pieces, beyond the jerk of two updates, relative to max_acceleration
+  Worst rate_jump;          // at ends of pieces, relative to two updates of acceleration plus 0.1 % of the rate
+  Worst rest;               // first and last rate at a stop, relative to the rule for the floor
+  Worst corner;             // speed through a corner, relative to what the rules for corners allow
+  std::size_t corners = 0;  // judged corners
   std::size_t stops = 0;
   std::uint64_t clocks = 0;
   std::uint64_t updates = 0;
   double seconds(double clock_hz) const { return static_cast<double>(clocks) / clock_hz; }
 };
 
-// Throws std::runtime_error for a stream that is no motion: ticks of geometry and feed that do not match between two
-// barriers.
+// Throws std::runtime_error if the ticks of geometry and feed differ between two barriers.
 MotionVerdict judge_motion(const std::vector<driver::Command>& commands, const MotionLimits& limits);
 
-// The steps of a golden model of the card, against the same reading: how far, in pulses, an axis's count of steps ever
-// is from its position. Steps in order of cycles; the clocks from a start's first rate to its first step are taken
-// from that step.
+// Compares the steps of a golden model of the card with the same reading. Returns the largest difference, in pulses,
+// between the count of steps of an axis and its position. The steps are in the order of their cycles. The clocks from
+// the first rate of a start to its first step are taken from that step.
 struct TimedStep {
   std::uint64_t cycle;
   std::uint8_t axis;

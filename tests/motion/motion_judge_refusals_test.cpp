@@ -1,4 +1,4 @@
-// Whether the second reading can say no.
+// The judge of motion must detect motion that breaks the limits.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -11,7 +11,7 @@
 namespace trammel::test {
 namespace {
 
-// Judged by other limits than it was planned for.
+// Judges motion by other limits than those it was planned for.
 class MotionJudgeSaysNo : public testing::Test {
  protected:
   static MotionVerdict judged(const std::string& program, const machine::Machine& planned,
@@ -36,7 +36,7 @@ TEST_F(MotionJudgeSaysNo, ToATrapezoidWhereJerkIsLimited) {
   EXPECT_GT(verdict.rest.share, 1.01);
 }
 
-// A planner that does not know what curves cost plans as for a machine of a hundred times the acceleration.
+// A planner that ignores the acceleration of curves: it plans for a machine with ten times the acceleration.
 TEST_F(MotionJudgeSaysNo, ToArcsThatAreTooFast) {
   const std::string circle = "G21 G90 G94 F6000\nG2 X0 Y0 I5 J0\nM2\n";
   EXPECT_GT(judged(circle, machine_of(100, 10000, 0), machine_of(100, 1000, 0)).acceleration.share, 1.5);
@@ -55,14 +55,14 @@ TEST_F(MotionJudgeSaysNo, ToARateThatJumps) {
   EXPECT_GT(run.verdict().rate_jump.share, 1.5);
 }
 
-// Where ticks a mm change too: from X alone to X with 4 times as much of E, above the floor.
+// At a change of ticks per mm: from X alone to X with 4 times as much E, above the floor.
 TEST_F(MotionJudgeSaysNo, ToARateThatJumpsWhereTheDensityChanges) {
   const machine::Machine machine = machine_of(100, 1000, 0);
   gcode::TextLines lines("G21 G90 G94 F600\nG1 X40\nG1 X80 E-160\nG1 X120\nM2\n", "program");
   Planned planned(lines, machine, 10 * kClock);
   const auto judged = [&] { return judge_motion(planned.commands, {machine, 10 * kClock, 0.01}).rate_jump.share; };
   ASSERT_LE(judged(), 1);
-  std::vector<driver::FeedCommand*> begins;  // of lines
+  std::vector<driver::FeedCommand*> begins;  // first piece of each line
   bool begin = true;
   for (driver::Command& command : planned.commands) {
     auto* piece = std::get_if<driver::FeedCommand>(&command);
@@ -90,7 +90,7 @@ TEST_F(MotionJudgeSaysNo, ToStepsThatAreLateMissingOrTooMany) {
   std::vector<TimedStep>& steps = run.recorder().steps;
   ASSERT_LE(run.farthest(), 0.8);
   const std::vector<TimedStep> right = steps;
-  for (std::size_t i = steps.size() / 3; i < steps.size(); ++i) steps[i].cycle += 60;  // half a pulse at 8,000 a second
+  for (std::size_t i = steps.size() / 3; i < steps.size(); ++i) steps[i].cycle += 60;  // half a pulse at 8,000 per s
   EXPECT_GT(run.farthest(), 0.8);
   steps = right;
   steps.erase(steps.begin() + 500);

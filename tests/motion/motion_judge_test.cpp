@@ -1,4 +1,4 @@
-// The second reading of whole programs.
+// Whole programs under the independent reading of motion.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,16 +19,16 @@
 namespace trammel::test {
 namespace {
 
-constexpr std::uint32_t kFastClock = 50'000'000;  // where the bus has to bring 15,000 lines a second
+constexpr std::uint32_t kFastClock = 50'000'000;  // the bus must carry 15,000 lines per second at this clock
 
-// TRAMMEL_LONG: all thousand.
+// With TRAMMEL_LONG all thousand programs run.
 bool long_run() { return std::getenv("TRAMMEL_LONG") != nullptr; }
 unsigned random_programs() { return long_run() ? 1000 : 60; }
 
 TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   std::vector<unsigned> seeds(random_programs());
   std::iota(seeds.begin(), seeds.end(), 1U);
-  // Of the thousand those with a ramp behind a few ticks at a rate near one a clock.
+  // Those of the thousand that have a ramp after a few ticks at a rate near one per clock.
   if (!long_run()) seeds.insert(seeds.end(), {291, 367, 795});
   for (const unsigned seed : seeds) {
     const double jerk = seed % 2 == 0 ? 20000 : 0;
@@ -44,8 +44,8 @@ TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   }
 }
 
-// Phases of a few ticks, 2 ms at the most: whole ticks take no axis beyond its acceleration. In the tick in which a
-// ramp reaches it the acceleration jumps by what it lacks, 0.042 of the limit here.
+// Phases of a few ticks, 2 ms at most: rounding to whole ticks takes no axis beyond its acceleration. In the tick in
+// which a ramp reaches its acceleration, the acceleration jumps by the rest; here by 0.042 of the limit.
 TEST(MotionJudge, RampsOfAFewTicksAreWithinTheirLimits) {
   double worst = 0;
   double jump = 0;
@@ -68,9 +68,9 @@ TEST(MotionJudge, RampsOfAFewTicksAreWithinTheirLimits) {
   RecordProperty("acceleration_jump", std::to_string(jump));
 }
 
-// An axis beside X Y Z that goes along, up to 32 times as far: the path is that of X Y Z all the same. Ticks a mm
-// change at corners, by up to as much; in the five that come first the rate would jump there if what passes of the new
-// path at the old rate counted as motion.
+// An axis outside X Y Z moves along, up to 32 times as far; the path is still that of X Y Z. The ticks per mm change at
+// corners by up to this factor. With the first five seeds the rate would jump there if the part of the new path at the
+// old rate counted as motion.
 TEST(MotionJudge, ProgramsWithAFurtherAxisAreWithinTheirLimits) {
   std::vector<unsigned> seeds = {65, 93, 191, 219, 239};
   for (unsigned seed = 1; seed <= (long_run() ? 250U : 30U); ++seed) seeds.push_back(seed);
@@ -87,8 +87,7 @@ TEST(MotionJudge, ProgramsWithAFurtherAxisAreWithinTheirLimits) {
   }
 }
 
-// 40 mm of short chords that bend to and fro, at feeds that change: where the clock is slow, so does the density of
-// ticks.
+// 40 mm of short chords that bend both ways, with changing feeds. With the slow clock the density of ticks changes too.
 std::string bends_with_feeds(unsigned seed) {
   std::mt19937 random(seed);
   std::string program = "G21 G90 G94\n";
@@ -106,10 +105,10 @@ std::string bends_with_feeds(unsigned seed) {
   return program + "M2\n";
 }
 
-// A window shorter than a stopping distance makes the motion slow down in mid path, and speed up again.
+// A window shorter than the stopping distance makes the motion slow down in the middle of the path and speed up again.
 TEST(MotionJudge, ShortWindowsAreWithinTheirLimits) {
   constexpr double kJerk = 100'000;
-  // At the last three a piece of less than an update lies before a change of density.
+  // With the last three seeds, a piece shorter than an update comes before a change of density.
   for (const unsigned seed : {1U, 2U, 42U, 78U, 68U, 74U, 96U}) {
     SCOPED_TRACE(seed);
     const std::uint32_t clock = seed % 2 == 0 ? kClock : 10 * kClock;
@@ -122,8 +121,8 @@ TEST(MotionJudge, ShortWindowsAreWithinTheirLimits) {
   }
 }
 
-// Of next to no length or speed: a generator's arc that takes more ticks than its length has, a stop that is shorter
-// than a tick, a line that takes 18 s. The feed must not come to nothing before the ticks do.
+// Almost no length or speed: an arc in chords with more ticks than its length has, a stop shorter than a tick, a line
+// of 18 s. The feed must not reach 0 before the ticks end.
 TEST(MotionJudge, PiecesEndInTheirTime) {
   struct Case {
     const char* program;
@@ -158,7 +157,7 @@ TEST(MotionJudge, PiecesEndInTheirTime) {
   }
 }
 
-// With G64 P: arcs in main planes and chords in others take the corners' places.
+// With G64 P, arcs in main planes and chords in other planes replace the corners.
 TEST(MotionJudge, BlendedProgramsAreWithinTheirLimits) {
   for (unsigned seed = 1; seed <= random_programs() / 4; ++seed) {
     const double jerk = seed % 2 == 0 ? 20000 : 0;
@@ -183,7 +182,7 @@ TEST(MotionJudge, StepsFollowTheCommandedMotion) {
 }
 
 #ifdef TRAMMEL_SHARED_GCODE_DIR
-// Without TRAMMEL_LONG a short one alone. octocat would not fit in memory.
+// Only a short program without TRAMMEL_LONG. The steps of octocat would not fit in memory.
 TEST(MotionJudge, StepsFollowRealPrograms) {
   using Names = std::vector<std::string>;
   for (const std::string& name : long_run()
@@ -206,7 +205,7 @@ TEST(MotionJudge, StepsFollowABlendedMotion) {
 }
 
 #ifdef TRAMMEL_SHARED_GCODE_DIR
-// Where the clock does not change the ticks a pulse between lines and blends.
+// The clock does not change the ticks per pulse between lines and blends.
 TEST(MotionJudge, OctocatBlendedIsWithinItsLimits) {
   std::ifstream file(std::filesystem::path(TRAMMEL_SHARED_GCODE_DIR) / "octocat.gcode");
   std::string program = "G64 P0.1\n";
@@ -234,7 +233,7 @@ TEST(MotionJudge, RealProgramsAreWithinTheirLimits) {
       machine::Machine machine = fast_machine(jerk);
       machine.motion.junction_deviation = 0.02;
       const Planned planned(lines, machine, kClock, 15);
-      if (planned.error) continue;  // two are refused
+      if (planned.error) continue;  // two programs are refused
       const MotionVerdict verdict = judge_motion(planned.commands, {machine, kClock, 0.02});
       expect_within_limits(verdict);
       EXPECT_NEAR(verdict.seconds(kClock), planned.seconds, 0.001 * planned.seconds);
@@ -243,7 +242,7 @@ TEST(MotionJudge, RealProgramsAreWithinTheirLimits) {
 }
 #endif
 
-// Points of a curve at equal distances along it, at a feed of 300 mm/s.
+// Points of a curve at equal distances, at a feed of 300 mm/s.
 std::string chords(std::size_t count, double chord, double (*x)(double), double (*y)(double)) {
   std::string program = "G21 G90 G94 F18000\n";
   double parameter = 0;
@@ -281,7 +280,7 @@ TEST(MotionJudge, CurvesInChordsAreWithinTheirLimits) {
   }
 }
 
-// From rest to rest on arcs alone: the acceleration in all is what the axes have at every speed, never more.
+// From rest to rest on arcs alone: the total acceleration is that of the axes at every speed, never more.
 TEST(MotionJudge, ArcsUseTheirAccelerationAtEverySpeed) {
   for (const char* text :
        {"G2 I10\n", "G3 X20 I10\n", "G2 X1 Y1 I1\n", "G17 G2 I10 Z2 P2\n", "G1 X5\nG2 X15 I5\nG3 X18 Y3 J3\n"}) {
@@ -293,7 +292,7 @@ TEST(MotionJudge, ArcsUseTheirAccelerationAtEverySpeed) {
       const Planned planned(lines, machine, 10 * kClock);
       const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
       expect_within_limits(verdict);
-      // On the smallest arc the lower jerk is the limit.
+      // On the smallest arc, the lower jerk is the limit.
       const bool slow = jerk == 20'000 && text == std::string_view("G2 X1 Y1 I1\n");
       EXPECT_GT(verdict.acceleration.share, slow ? 0.43 : 0.98);
       EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
@@ -301,7 +300,7 @@ TEST(MotionJudge, ArcsUseTheirAccelerationAtEverySpeed) {
   }
 }
 
-// Small arcs among lines, tangent or not: the jerk that an arc leaves follows the speed up to its ends.
+// Small arcs among lines, tangent or not: up to the ends of an arc, the speed keeps the jerk that the arc leaves.
 TEST(MotionJudge, SmallArcsAmongLinesAreWithinTheirLimits) {
   std::mt19937 random(21);
   const auto logarithmic = [&](double low, double high) {
@@ -323,7 +322,7 @@ TEST(MotionJudge, SmallArcsAmongLinesAreWithinTheirLimits) {
     const Planned planned(lines, machine, 10 * kClock);
     ASSERT_FALSE(planned.error);
     MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
-    EXPECT_LE(verdict.acceleration_jump.share, 0.0105);  // measured: 0.0102, in the tick in which a ramp is whole
+    EXPECT_LE(verdict.acceleration_jump.share, 0.0105);  // measured: 0.0102, in the tick in which a ramp ends
     verdict.acceleration_jump.share = 0;
     expect_within_limits(verdict);
     EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);

@@ -10,8 +10,8 @@
 namespace trammel::test {
 namespace {
 
-// Follows the steps along the motion. What comes before a start's first step is kept until that step is found in the
-// reading: then the two clocks are known to belong together.
+// Follows the steps along the motion. The intervals before the first step after a start are kept until the reading
+// contains that step; this relates the two clocks to each other.
 class StepJudge {
  public:
   explicit StepJudge(const std::vector<TimedStep>& steps) : steps_(steps) {}
@@ -30,7 +30,7 @@ class StepJudge {
     if (next_ == steps_.size()) throw std::runtime_error("a step is missing");
     offset_ = static_cast<double>(steps_[next_].cycle) - *first;
     found_ = true;
-    // The look for the first step has moved the path's beginning along: back to the start.
+    // The search for the first step has moved path_begin_; return to the start.
     path_begin_ = counts_;
     path_ = nullptr;
     for (const Interval& one : waiting_) follow(one);
@@ -48,7 +48,7 @@ class StepJudge {
  private:
   using Place = std::array<double, card_map::kMaxAxes>;
   using Counts = std::array<std::int64_t, card_map::kMaxAxes>;
-  static constexpr double kSettle = 1000;  // clocks in which shapers give what they hold
+  static constexpr double kSettle = 1000;  // clocks until the shapers have made their waiting steps
 
   static double ticks(const Interval& now, double clocks) {
     return static_cast<double>(now.ticks) + static_cast<double>(now.phase) * 0x1p-48 +
@@ -82,7 +82,7 @@ class StepJudge {
     return places;
   }
 
-  // The clock of the first step of any axis, when it comes in this interval: half a pulse gone, at a whole tick.
+  // The clock of the first step of any axis if it is in this interval: at a whole tick, after half a pulse.
   std::optional<double> first_step(const Interval& now) {
     enter(now);
     const double gone = ticks(now, 0);

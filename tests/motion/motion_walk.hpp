@@ -1,4 +1,5 @@
-// Feed pieces and paths of a command stream, walked together: the motion cut into intervals of one path at one rate.
+// Walks the feed pieces and paths of a command stream together, and cuts the motion into intervals of one path at one
+// rate.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 
 namespace trammel::test {
 
-// A path of the stream: one of the two.
+// A path of the stream: either a line or an arc.
 struct Path {
   std::size_t command = 0;  // number of its command, from 0
   std::uint64_t ticks = 0;  // feed ticks
@@ -20,34 +21,34 @@ struct Path {
   const driver::ArcChordCommand* arc = nullptr;
 };
 
-// Clocks at one rate of the feed generator, all on one path.
+// Clocks at one rate of the feed generator, on one path.
 struct Interval {
   const Path* path = nullptr;
-  std::uint64_t ticks = 0;  // of the path, before the interval
-  std::uint64_t phase = 0;  // 2^-48 ticks, likewise
-  std::uint64_t clock = 0;  // of the motion: barriers take no time here
+  std::uint64_t ticks = 0;  // ticks of the path before the interval
+  std::uint64_t phase = 0;  // 2^-48 ticks, before the interval
+  std::uint64_t clock = 0;  // clock of the motion; barriers take no time here
   std::uint64_t clocks = 0;
-  std::uint64_t rate = 0;         // 2^-48 ticks a clock
-  std::int64_t gain = 0;          // rate of the piece's next update, if it comes, less this one's
-  std::int64_t acceleration = 0;  // 2^-64 ticks a clock, an update
-  std::int64_t jerk = 0;          // 2^-64 ticks a clock, an update, an update
+  std::uint64_t rate = 0;         // 2^-48 ticks per clock
+  std::int64_t gain = 0;          // rate of the piece's next update, if it comes, minus this rate
+  std::int64_t acceleration = 0;  // 2^-64 ticks per clock, per update
+  std::int64_t jerk = 0;          // 2^-64 ticks per clock, per update^2
   bool begins_path = false;
   bool begins_piece = false;
 };
 
 class MotionWalk {
  public:
-  // From the carry that is a piece's last tick to the first clock at the next one's rate: the tick is visible 3 clocks
-  // after its carry, owed a clock later and taken then; the swap is visible a clock after that, and the slope is the
-  // next one's from the clock that follows it.
+  // Clocks from the carry of the last tick of a piece to the first clock at the rate of the next piece. The tick is
+  // visible 3 clocks after its carry, owed one clock later and taken then. The swap is visible one clock after that,
+  // and the next slope applies from the following clock.
   static constexpr std::uint64_t kSwapClocks = 6;
 
   explicit MotionWalk(const std::vector<driver::Command>& commands) {
     for (std::size_t i = 0; i < commands.size(); ++i) add(commands[i], i);
   }
 
-  // Calls visitor.start(), visitor.interval(const Interval&) for each, and visitor.stop(), for every stretch between
-  // two barriers in which something moves.
+  // For each stretch between two barriers in which something moves: calls visitor.start(), visitor.interval(const
+  // Interval&) for each interval, and visitor.stop().
   template <typename Visitor>
   void visit(Visitor& visitor) {
     std::size_t path = 0;
@@ -64,7 +65,7 @@ class MotionWalk {
 
  private:
   struct Barrier {
-    std::size_t paths;  // before it
+    std::size_t paths;  // paths before the barrier
     std::size_t pieces;
   };
 
@@ -101,13 +102,13 @@ class MotionWalk {
       at.begins_path = true;
     };
     enter();
-    std::uint64_t ahead = 0;  // ticks of the piece that its predecessor's last rates have given
+    std::uint64_t ahead = 0;  // ticks of the piece that came at the last rates of the previous piece
     for (; piece < to.pieces; ++piece) {
       Rate rate(*pieces_[piece]);
       at.begins_piece = true;
       std::uint64_t left = pieces_[piece]->ticks - ahead;
       std::uint64_t clocks = 32;
-      // One rate for `most` clocks at most, and up to the last of `ticks` ticks.
+      // One rate for at most `most` clocks, and at most up to the last of `ticks` ticks.
       const auto hold = [&](std::uint64_t most, std::uint64_t& ticks) {
         at.rate = rate.slope();
         at.gain = static_cast<std::int64_t>(rate.next_slope()) - static_cast<std::int64_t>(at.rate);
@@ -131,7 +132,7 @@ class MotionWalk {
         hold(32, left);
         if (left == 0) break;
       }
-      // The last tick is on its way: the rate goes on until the next piece's takes its place.
+      // The last tick is in progress: the rate continues until that of the next piece replaces it.
       ahead = 0;
       if (piece + 1 == to.pieces) break;
       for (std::uint64_t rest = kSwapClocks; rest != 0;) {
@@ -150,20 +151,20 @@ class MotionWalk {
     visitor.stop();
   }
 
-  // Up to `clocks` clocks, but none after the `most`-th tick; gives back the ticks that come in them.
+  // At most `clocks` clocks, and none after the `most`-th tick; returns the ticks in these clocks.
   std::uint64_t run(Interval& at, std::uint64_t most, std::uint64_t clocks) {
     at.clock = clock_;
-    const std::uint64_t ticks = (at.phase + at.rate * clocks) >> 48;  // a rate is below 1 and clocks up to 32: 54 bits
+    const std::uint64_t ticks = (at.phase + at.rate * clocks) >> 48;  // rate < 1, clocks <= 32: 54 bits
     if (ticks < most) {
       at.clocks = clocks;
       return ticks;
     }
-    at.clocks = ((most << 48) - at.phase + at.rate - 1) / at.rate;  // at most 32 ticks a call: 53 bits
+    at.clocks = ((most << 48) - at.phase + at.rate - 1) / at.rate;  // at most 32 ticks per call: 53 bits
     return most;
   }
 
-  // Rates of a piece: R += A, A += J at each 32nd clock, clamped between floor and one tick a clock; the first is taken
-  // as it is.
+  // Rates of a piece: R += A, A += J in every 32nd clock, clamped between the floor and one tick per clock. The first
+  // rate is not clamped.
   __extension__ using Wide = __int128;
   class Rate {
    public:

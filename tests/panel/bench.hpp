@@ -1,4 +1,4 @@
-// A session on a SlowMachine, and a page that speaks to it.
+// A session on a SlowMachine, and the page that talks to it.
 #pragma once
 
 #include <chrono>
@@ -31,7 +31,7 @@ class Bench {
     const json now = state();
     return now.contains("notes") ? now["notes"].dump() : "";
   }
-  // As the page sends it now.
+  // Sends a message with the present clock, as the page does.
   void send(json message) {
     if (!message.contains("clock")) message["clock"] = state()["clock"];
     session.receive(message.dump());
@@ -41,13 +41,13 @@ class Bench {
     send({{"do", "part"}, {"text", text}});
     send({{"do", "loaded"}});
   }
-  // A key that goes down; held() says again that it is.
+  // A key goes down. held() reports that it is still down.
   void press(std::uint64_t id, double step = 0, int way = 1) {
     send({{"do", "jog"}, {"id", id}, {"axis", 0}, {"way", way}, {"step", step}, {"percent", 50}});
   }
   void held(std::uint64_t id) { send({{"do", "held"}, {"id", id}}); }
 
-  // Until the machine's clock has gone on by so much; a motion may end later.
+  // Works until the machine's clock has advanced by `time`. A motion may end later.
   void work(milliseconds time) {
     const TimePoint end = machine.now + time;
     while (machine.now < end) session.work();
@@ -55,7 +55,7 @@ class Bench {
   void settle() {
     for (unsigned n = 0; n < 5; ++n) session.work();
   }
-  // `step` is called once, when the machine has moved for so long.
+  // Calls `step` once, when the machine's clock has advanced by `time`.
   void after(milliseconds time, std::function<void()> step) {
     const TimePoint due = machine.now + time;
     machine.at_moments = [this, due, step = std::move(step)] {

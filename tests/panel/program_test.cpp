@@ -82,7 +82,7 @@ TEST(Program, IsHeldAndStopped) {
   EXPECT_LT(bench.machine.live.at[0], 6);
 }
 
-// Whenever it comes: no line behind it moves anything.
+// A stop at any time: no line after it moves anything.
 TEST(Program, NothingMovesBehindAStop) {
   std::string text = "G91 F1200\n";
   for (unsigned n = 0; n < 60; ++n) text += n % 2 == 0 ? "G0 X0.3\n" : "G0 Y0.2\n";
@@ -100,7 +100,7 @@ TEST(Program, NothingMovesBehindAStop) {
   }
 }
 
-// Nothing moves for a program that the controller would refuse in its midst.
+// Nothing moves if the controller would refuse a later line of the program.
 TEST(Program, IsCheckedBeforeItMoves) {
   const std::pair<const char*, const char*> kCases[]{
       {"G1 X5 F600\nG2 I3\n", "Line 2: axis words are missing"},

@@ -34,7 +34,7 @@ class Served : public testing::Test {
     const std::string url = server_->url();
     port_ = std::stoi(url.substr(url.rfind(':') + 1));
   }
-  // The whole answer to a request.
+  // The complete answer to a request.
   std::string ask(const std::string& head) {
     const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};

@@ -42,7 +42,7 @@ TEST(Jog, EndsWhenThePageWasSilentForTheDeadMansTime) {
   EXPECT_THAT(bench.notes(), HasSubstr("silent for 300 ms"));
 }
 
-// A message that was under way for longer than the dead man's time says nothing of now.
+// A message that was on its way for longer than the dead-man time does not count.
 TEST(Jog, AMessageThatWasUnderWayTooLongDoesNotCount) {
   Bench bench;
   bench.press(1);
@@ -151,7 +151,7 @@ TEST(Alarm, TellsTheCardsReasonAndStopsTheProgram) {
   const json state = bench.state();
   EXPECT_EQ(state["alarm"]["number"], 1);
   EXPECT_EQ(state["alarm"]["reason"], "fault: limit switch X minus");
-  // The cause stays: so does the alarm.
+  // The alarm remains as long as its cause.
   bench.send({{"do", "unlock"}});
   bench.settle();
   EXPECT_EQ(bench.state()["state"], "Alarm");

@@ -1,4 +1,4 @@
-// A machine in memory with a clock of its own: each moment takes 5 ms, and its axes move in them.
+// A machine in memory with its own clock: time passes in moments of 5 ms, in which its axes move.
 #pragma once
 
 #include <algorithm>
@@ -41,15 +41,15 @@ class SlowMachine final : public grbl::MachineSide {
   explicit SlowMachine(machine::Machine machine = small_machine()) : machine_(std::move(machine)) {}
 
   static constexpr std::chrono::milliseconds kMoment{5};
-  static constexpr double kStep = 0.1;  // mm, way in a moment: 20 mm/s
+  static constexpr double kStep = 0.1;  // mm per moment: 20 mm/s
 
   TimePoint now{};
-  std::function<void()> at_moments;  // before what the session does
+  std::function<void()> at_moments;  // called in each moment, before the session's work
   grbl::Live live;
   bool is_homed = true;
   grbl::End trouble_now;
   grbl::End homing_end;
-  std::vector<std::string> lines;  // of motions, without the lines that set the state
+  std::vector<std::string> lines;  // lines of motions, without the lines that set the state
   std::vector<TimePoint> stops;
   std::vector<bool> holds;
   unsigned homings = 0;
@@ -62,7 +62,7 @@ class SlowMachine final : public grbl::MachineSide {
   }
   void set_machine(const machine::Machine& machine) override { machine_ = machine; }
   grbl::Live look() override {
-    live.any_sent = true;  // so that nobody waits for the next line, by the host's clock
+    live.any_sent = true;  // no wait for the next line by the host's clock
     return live;
   }
   bool probe_touches() override { return false; }
@@ -113,7 +113,7 @@ class SlowMachine final : public grbl::MachineSide {
     moving_ = true;
     stopping_ = false;
   }
-  // False: stopped on the way.
+  // Returns false if the motion was stopped.
   bool go(const gcode::Coordinates& target) {
     const gcode::Coordinates from = live.at;
     double way = 0;
@@ -130,9 +130,9 @@ class SlowMachine final : public grbl::MachineSide {
   void moment() {
     now += kMoment;
     if (++moments_ > kMostMoments) throw std::logic_error("the test waits for ever");
-    if (inside_) return;  // as the card's bus: what happens meanwhile has no meanwhile of its own
+    if (inside_) return;  // as on the card's bus, the hook is not called from within itself
     inside_ = true;
-    const std::function<void()> step = at_moments;  // which it may replace
+    const std::function<void()> step = at_moments;  // a copy, because the step may replace it
     if (step) step();
     if (meanwhile_) meanwhile_();
     inside_ = false;

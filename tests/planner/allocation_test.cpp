@@ -1,4 +1,4 @@
-// Reader, blocks, planner and encoding allocate nothing once they run: the global operator new counts.
+// Reader, blocks, planner and encoding must not allocate memory while they run. The global operator new counts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace trammel::planner {
 namespace {
 
-// Lines, arcs on the accumulator and as chords, dwells, again and again.
+// Repeats lines, arcs on the accumulator and as chords, and dwells.
 class EndlessLines final : public gcode::LineSource {
  public:
   bool next(std::string_view& line) override {

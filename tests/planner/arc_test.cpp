@@ -1,4 +1,4 @@
-// Arcs and helices as the planner sends them to the arc generator: ends, limits, and speed.
+// Arcs and helices that the planner sends to the arc generator: ends, limits and speed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using driver::ArcChordCommand;
 using driver::FeedCommand;
 using driver::kPi;
 
-// The last block but the end, of which there must be one arc in chords.
+// The last block before the end; it must be one arc in chords.
 Planned last_arc(const std::string& text, const machine::Machine& machine = machine::default_machine()) {
   const Plan plan = plan_text(text, machine, {kClock, 4});
   if (plan.error) throw std::runtime_error(plan.error->message);
@@ -26,7 +26,7 @@ Planned last_arc(const std::string& text, const machine::Machine& machine = mach
 
 ArcChordCommand command_of(const Planned& arc) { return commands<ArcChordCommand>(arc).at(0); }
 
-// Ticks a second at the highest rate of all pieces.
+// Highest rate of all pieces, ticks/s.
 double top_rate(const Plan& plan) {
   double top = 0;
   for (const Planned& block : plan.blocks) {
@@ -37,7 +37,7 @@ double top_rate(const Plan& plan) {
   return top * kClock;
 }
 
-// The mean speed along the path over each whole chord, at the highest feed rate: its shortest and longest, mm/s.
+// Lowest and highest mean speed along the path over a whole chord, at a feed rate of `rate` ticks/s, mm/s.
 std::pair<double, double> chord_speeds(const ArcChordCommand& arc, double rate, double steps_per_mm) {
   model::ChordPath path(model::fields_of(arc));
   const double path_ticks = rate * static_cast<double>(arc.path_ticks) / static_cast<double>(arc.ticks);
@@ -56,7 +56,7 @@ std::pair<double, double> chord_speeds(const ArcChordCommand& arc, double rate, 
   return speeds;
 }
 
-// F1200 from 17 pulses of radius on: the whole chords are within 0.1 % of it.
+// At F1200 and radii from 17 pulses, the speed over whole chords is within 0.1 % of the feed.
 TEST(GeneratorArcs, KeepTheFeed) {
   const machine::Machine machine = machine_with({"axis.x.max_acceleration=100000", "axis.y.max_acceleration=100000"});
   double worst = 0;
@@ -84,7 +84,7 @@ TEST(GeneratorArcs, EvenStepsWhereTheClockAllowsThem) {
   }
 }
 
-// The length of a helix is that of X, Y and Z, as F has it; E goes along.
+// The length of a helix is that of X, Y and Z, to which F applies; E moves along.
 TEST(GeneratorArcs, Helices) {
   const Planned helix = last_arc("G1 X10 F600\nG3 X0 Y10 I-10 J0 Z-3 E2 P3\n");
   const double way = 2.25 * 2 * kPi * 10;
@@ -118,25 +118,25 @@ TEST(GeneratorArcs, InOtherPlanes) {
   EXPECT_EQ(yz.axis_y, 2);
 }
 
-// Centripetal acceleration and jerk hold in the plane; axes outside it have their own limits.
+// Limits of centripetal acceleration and jerk apply in the plane; axes outside it have their own limits.
 TEST(GeneratorArcs, AreLimited) {
   const Planned circle = last_arc("G2 I1 F60000\n");
   EXPECT_LE(circle.planned.speed * circle.planned.speed, 1000 * 1.001);
   EXPECT_GE(circle.planned.speed * circle.planned.speed, 1000 * 0.85);
   const machine::Machine jerky = machine_with({"axis.x.max_jerk=1000", "axis.y.max_jerk=1000"});
   EXPECT_LE(std::pow(last_arc("G2 I1 F60000\n", jerky).planned.speed, 3), 1000 * 1.001);
-  // A helix so steep that Z is the slowest: 10 mm/s of it.
+  // A helix so steep that Z limits it, to 10 mm/s of Z.
   const machine::Machine slow = machine_with({"axis.z.max_velocity=10"});
   const Planned steep = last_arc("G2 I10 Z100 F60000\n", slow);
   EXPECT_LE(steep.planned.speed * std::abs(steep->entry[2]), 10.001);
   EXPECT_GE(steep.planned.speed * std::abs(steep->entry[2]), 9.9);
   EXPECT_EQ(steep.planned.limit, SpeedLimit::kAxisVelocity);
-  // A flat one: its arc limits it, as it does the circle.
+  // The arc limits a flat helix, as it limits the circle.
   const Planned flat = last_arc("G2 I1 Z0.1 F60000\n");
   EXPECT_NEAR(flat.planned.speed, circle.planned.speed, 0.1);
 }
 
-// More turns than a command has path ticks for: several commands, end to end.
+// An arc with more turns than the path ticks of a command allow becomes several commands, one after the other.
 TEST(GeneratorArcs, LongOnesAreSplit) {
   const Plan plan = plan_text("G2 I2000 Z5 P2000 F6000\n", machine::default_machine(), {kClock, 4});
   ASSERT_FALSE(plan.error);

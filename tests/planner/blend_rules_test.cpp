@@ -1,4 +1,4 @@
-// G64 P: which corners become blends, and what a blend takes from the motions beside it.
+// G64 P: the corners that become blends, and the parts of the motions beside it that a blend replaces.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ TEST(BlendRules, MachinesMayLackAnAxisOfSpace) {
   EXPECT_THAT(corners_of("G64 P1 F600\nG1 X20\nZ20\n", lathe), ElementsAre(Corner::kNone, kBlend, Corner::kNone));
 }
 
-// Outputs beyond what a blend can take along keep the corner, and are switched there.
+// If there are more words of outputs than a blend can take along, the corner is kept and the outputs switch there.
 TEST(BlendRules, EightWordsOfOutputsAtTheMost) {
   machine::Machine machine = fine_steps();
   machine.outputs.m3 = 1;
@@ -115,7 +115,7 @@ TEST(BlendRules, CornersAreKeptOnDemand) {
   EXPECT_EQ(block.end[1], 200'000);
 }
 
-// From (0, 0) clockwise about (5, 0), to where it began: upwards, and then to the left.
+// A full circle from (0, 0), clockwise about (5, 0). It ends upwards; the next motion goes to the left.
 TEST(BlendRules, AFullCircleLosesItsEnd) {
   for (const char* turns : {"", " P3"}) {
     const std::vector<Block> blocks = moving_blocks(fmt::format("G64 P0.2 F600\nG2 I5{}\nG1 X-10\n", turns));
@@ -130,7 +130,7 @@ TEST(BlendRules, AFullCircleLosesItsEnd) {
   }
 }
 
-// The arc's radius grows by 4 um: that much of the tolerance is gone.
+// The radius of the arc grows by 4 um, which is subtracted from the tolerance.
 TEST(BlendRules, RoundedCentresTakeOfTheTolerance) {
   const std::string program = "G2 X10.004 I5\nG1 X20\n";
   EXPECT_THAT(corners_of("G64 P0.003 F600\n" + program), ElementsAre(Corner::kNoCurve, Corner::kNone));
@@ -140,7 +140,7 @@ TEST(BlendRules, RoundedCentresTakeOfTheTolerance) {
   EXPECT_NEAR(blocks[1].distance, 0.2, 1e-9) << "all of it at the most";
 }
 
-// Within a quarter of a pulse a blend is not seen, but where the corner's rules do not allow its speed.
+// A blend within a quarter of a pulse is not made, unless the rules of the corner do not allow its speed.
 TEST(BlendRules, InvisibleOnesAreThoseOfTheCornersOwnDeviation) {
   const auto corner = [](double deviation) {
     machine::Machine machine = fine_steps(1);
@@ -152,7 +152,7 @@ TEST(BlendRules, InvisibleOnesAreThoseOfTheCornersOwnDeviation) {
   EXPECT_EQ(corner(0.001), kBlend);
 }
 
-// The corner that a blend keeps the path away from is a target all the same.
+// Soft limits apply to the corner, because it is a target of the program, although the blended path does not reach it.
 TEST(BlendRules, CornersHaveToBeWithinSoftLimits) {
   machine::Machine machine = fine_steps();
   machine.axes[0].max = 20;

@@ -19,7 +19,7 @@ using Place = std::array<double, 3>;
 
 double distance(const Place& a, const Place& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-// Of a point from the segment.
+// Distance of point `p` from the segment `a` to `b`.
 double from_segment(const Place& p, const Place& a, const Place& b) {
   double along = 0;
   double square = 0;
@@ -37,7 +37,7 @@ double from_points(const Place& p, const std::vector<Place>& path) {
   return least;
 }
 
-// How far two paths, as points, are from each other: each point of one from the other.
+// Largest distance between two paths, given as points: of each point of one path from the other path.
 double apart(const std::vector<Place>& one, const std::vector<Place>& other) {
   double most = 0;
   for (const Place& p : one) most = std::max(most, from_points(p, other));
@@ -45,7 +45,7 @@ double apart(const std::vector<Place>& one, const std::vector<Place>& other) {
   return most;
 }
 
-constexpr double kScale = 1e5;  // pulses a mm: what rounding to pulses does is out of the way
+constexpr double kScale = 1e5;  // pulses per mm; so many that rounding to pulses has little effect
 
 machine::Machine fine_machine() {
   machine::Machine machine = machine::default_machine();
@@ -65,7 +65,7 @@ CardLimits fast_card() {
   return card;
 }
 
-// What a block goes through, from what it says of the path before rounding; lines from their ends.
+// Adds points of a block's path before rounding; for a line, its ends.
 void add_points(const Block& block, double points_a_radian, std::vector<Place>& path) {
   const auto mm = [](std::int64_t pulses) { return static_cast<double>(pulses) / kScale; };
   Place start{}, end{};
@@ -101,11 +101,11 @@ void add_points(const Block& block, double points_a_radian, std::vector<Place>& 
 
 struct Blended {
   std::vector<Place> path;
-  std::vector<Block> blocks;  // that move
+  std::vector<Block> blocks;  // blocks that move
   double seconds = 0;
   double distance = 0;
   std::size_t blends = 0;
-  std::size_t faster = 0;  // corners kept for that
+  std::size_t faster = 0;  // corners that were kept because they are faster
 };
 
 Blended blended(const std::string& program, const machine::Machine& machine, double points_a_radian = 1000) {
@@ -132,12 +132,12 @@ std::string lines_through(const std::vector<Place>& corners) {
   return text + "M2\n";
 }
 
-// Of a point to pulses, of the program's digits, and of what is left of a line or an arc within a pulse: it has no step
-// and is part of the next motion.
+// Rounding of a point to pulses and of the program's digits, and the rest of a line or an arc within a pulse. Such a
+// rest has no step and is part of the next motion.
 constexpr double kRounding = (0.5 * 1.7320508 + 1) / kScale + 1e-6;
 
-// Directions go on from block to block, wherever a corner is not kept. What is left of an arc may turn within a pulse
-// and have no step.
+// Tolerance for the directions at the ends of a blend, which must equal those of its neighbours. The rest of an arc may
+// turn within a pulse and have no step.
 constexpr double kWithinAPulse = 1 / kScale / 0.125;
 
 void expect_tangent(const std::vector<Block>& blocks, double tolerance) {
@@ -161,14 +161,15 @@ TEST(Blend, ASquareIsQuickerAndStaysWithinTheTolerance) {
     before = path.seconds;
     EXPECT_EQ(path.blends, 4U);
     EXPECT_NEAR(path.distance, tolerance, 1e-12);
-    EXPECT_NEAR(apart(path.path, square), tolerance, kRounding + 1e-3 * tolerance);  // reached, not passed
+    EXPECT_NEAR(apart(path.path, square), tolerance,
+                kRounding + 1e-3 * tolerance);  // the tolerance is reached, but not exceeded
     expect_tangent(path.blocks, 1e-6);
     EXPECT_EQ(path.blocks.back().end[0], 20 * kScale);
     for (const Block& block : path.blocks) EXPECT_TRUE(block.geometry != Geometry::kChords);
   }
 }
 
-// Corners in space, in a main plane, slight and sharp, long lines and short ones.
+// Random corners in space or in a main plane, slight and sharp, between long and short lines.
 std::vector<Place> random_corners(std::mt19937& random, bool flat) {
   const auto number = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
   std::vector<Place> corners{{0, 0, 0}};
@@ -199,7 +200,7 @@ RC_GTEST_PROP(Blend, RandomLinesAreLeftByTheToleranceAtMost, ()) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     RC_ASSERT(path.blocks.back().end[axis] == kinematics::to_pulses(corners.back()[axis], kScale));
   }
-  // The half of each line: the point in its middle stays where it is, but for what a pulse hides.
+  // A blend takes at most half of a line, so the middle of each line stays on the path, except for rounding.
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const Place& a = corners[i - 1];
     const Place& b = corners[i];
@@ -255,10 +256,11 @@ Curves random_curves(std::mt19937& random) {
   return curves;
 }
 
-constexpr double kChords = 4 * (6.0 / 300) * (6.0 / 300) / 8;  // how far the points' chords are from an arc
+constexpr double kChords =
+    4 * (6.0 / 300) * (6.0 / 300) / 8;  // largest distance of an arc from the chords between its points
 
-// Where the corner's own speed is quicker, it is kept: each is judged by its two motions alone, so a program may take a
-// little longer than with all corners kept.
+// A corner is kept if this is faster than a blend. Each corner is judged by its two motions alone, so a program may
+// take a little longer than with all corners kept.
 TEST(Blend, AreMadeWhereTheyAreQuicker) {
   machine::Machine machine = machine::default_machine();
   for (machine::MachineAxis& axis : machine.axes) axis.max_velocity = 100;
@@ -322,7 +324,7 @@ RC_GTEST_PROP(Blend, RandomArcsAndLinesAreLeftByTheToleranceAtMost, ()) {
   RC_CLASSIFY(path.blends > 3, "more than three");
 }
 
-// Blocks by what they are: line, arc, chords; a blend in brackets.
+// A letter for each block: line, arc, chords; a blend in brackets.
 std::string kinds(const std::vector<Block>& blocks) {
   std::string text;
   for (const Block& block : blocks) {
@@ -340,7 +342,7 @@ TEST(Blend, TakesTheCardsArcsInMainPlanesAndChordsInOthers) {
   EXPECT_EQ(kinds("G64 P0.1\nG1 Y10\nZ10\nM2\n"), "l(a)l");
   EXPECT_EQ(kinds("G64 P0.1\nG1 X10 Z1\nY10\nM2\n"), "l(c)l");
   EXPECT_EQ(kinds("G64 P0.1\nG1 X10\nG2 X20 I5\nM2\n"), "l(a)a");
-  EXPECT_EQ(kinds("G64 P0.1\nG2 X10 I5\nG3 X20 I5\nG1 X30\nM2\n"), "aa(a)l");  // the first is tangent
+  EXPECT_EQ(kinds("G64 P0.1\nG2 X10 I5\nG3 X20 I5\nG1 X30\nM2\n"), "aa(a)l");  // the first corner is tangent
   EXPECT_EQ(kinds("G64 P0.1\nG2 X10 I5\nG2 X20 I5\nM2\n"), "aa");              // a reversal
   EXPECT_EQ(kinds("G64 P0.1\nG18 G1 Z10\nG2 Z20 K5\nM2\n"), "l(a)a");
 }
@@ -357,7 +359,7 @@ TEST(Blend, KeepsCornersThatItCannotOrNeedNotRound) {
             (List{Corner::kNoCurve, Corner::kNoCurve, Corner::kNone}));
   EXPECT_EQ(corners("G64 P0.1\nG1 X0.000006\nY0.000006\nX10\nM2\n").front(), Corner::kInvisible);
   EXPECT_EQ(corners("G64 P0.1\nG1 X10\nX20\nM2\n"), (List{Corner::kNone, Corner::kNone}));
-  // Both motions must ask for it.
+  // Both motions must be under G64 P.
   for (const char* mode : {"G64", "G61", "G61.1"}) {
     EXPECT_EQ(corners(fmt::format("G64 P0.1\nG1 X10\n{}\nY10\nX0\nM2\n", mode)),
               (List{Corner::kNone, Corner::kNone, Corner::kNone}))
@@ -365,11 +367,11 @@ TEST(Blend, KeepsCornersThatItCannotOrNeedNotRound) {
     EXPECT_EQ(corners(fmt::format("{}\nG1 X10\nG64 P0.1\nY10\nM2\n", mode)), (List{Corner::kNone, Corner::kNone}))
         << mode;
   }
-  // Nor across a dwell, nor where X, Y and Z stand still.
+  // There is no blend across a dwell, or beside a motion without X, Y and Z.
   EXPECT_EQ(corners("G64 P0.1\nG1 X10\nG4 P0\nY10\nE5\nX0\nM2\n"), (List(4, Corner::kNone)));
 }
 
-// They change nothing of the motion.
+// Outputs do not change the motion.
 TEST(Blend, OutputsAreSwitchedWhereItsBlendBegins) {
   machine::Machine machine = fine_machine();
   machine.outputs.m3 = 1;

@@ -43,14 +43,14 @@ TEST(SoftLimits, CountInMachineCoordinates) {
 
 TEST(SoftLimits, HoldForTheExtremesOfArcs) {
   const machine::Machine machine = machine_with({"axis.x.max=109.9", "axis.y.min=-10.001"});
-  // Half a circle of radius 10 about (100, 0), ends inside: clockwise over X110, or over X90.
+  // Half a circle of radius 10 about (100, 0), with its ends inside: clockwise through X110, else through X90.
   EXPECT_THAT(refusal("G0 X100 Y10\nG2 Y-10 J-10 F100\n", machine), HasSubstr("p.ngc:2: X110 is beyond"));
   EXPECT_EQ(refusal("G0 X100 Y10\nG3 Y-10 J-10 F100\n", machine), "accepted");
   EXPECT_THAT(refusal("G0 X90\nG3 I10 F100\n", machine), HasSubstr("p.ngc:2: X110 is beyond")) << "a full circle";
   EXPECT_THAT(refusal("G0 X90\nG3 X109 Y-10.1 R20 F100\n", machine), HasSubstr("Y-10.1")) << "the end";
 }
 
-// A machine that stands outside may move in.
+// A machine outside its limits may move other axes, and may move back inside.
 TEST(SoftLimits, HoldForWhatMovesOnly) {
   const machine::Machine machine = machine_with({"axis.x.max=10", "axis.y.max=10"});
   EXPECT_EQ(refusal("G0 Y5\nX3\n", machine, nullptr, {50, 0}), "accepted");
@@ -96,7 +96,7 @@ TEST(Blocks, AreThoseOfThePathBeforeRounding) {
   EXPECT_DOUBLE_EQ(block.entry[1], 0.004 / block.length);
 }
 
-// What is too short for a step is part of the line behind it.
+// A line that is too short for a step is part of the next line.
 TEST(Blocks, BeginWhereTheLastOneEnded) {
   const Plan plan = plan_text("G1 X1 F600\nX1.003 Y0.004\nX1.006 Y0.008\nX2\n", machine::default_machine(), kCard);
   ASSERT_EQ(plan.blocks.size(), 4U);
@@ -105,17 +105,18 @@ TEST(Blocks, BeginWhereTheLastOneEnded) {
   EXPECT_DOUBLE_EQ(plan.blocks[2]->length, 0.994);
 }
 
-// Along X Y Z where one of these moves; as long as the finest of these would be where another axis has more pulses.
+// The length is measured along X, Y and Z if one of them moves. If another axis makes more pulses, pulses_per_mm counts
+// the pulses of that axis.
 TEST(Blocks, HaveTheLengthOfXYZWhateverGoesAlong) {
   const Plan plan = plan_text("G1 X3 Y4 E2 F600\nX3.1 E12\nX3.1001 E22\n", machine::default_machine(), kCard);
   EXPECT_DOUBLE_EQ(plan.blocks.at(0)->length, 5);
   EXPECT_DOUBLE_EQ(plan.blocks[0]->entry[3], 0.4);
   EXPECT_NEAR(plan.blocks.at(1)->length, 0.1, 1e-12);
   EXPECT_NEAR(plan.blocks[1]->entry[3], 100, 1e-9);
-  // Its steps are as even: 128 ticks each, in the same length.
+  // The steps of E are as even: 128 ticks each, over the same length.
   EXPECT_NEAR(plan.blocks[0]->pulses_per_mm, 80, 1e-9);
   EXPECT_NEAR(plan.blocks[1]->pulses_per_mm, 8000, 1e-6);
-  // E's pulses count where X may have none.
+  // X moves by less than a pulse, so the length is that of E.
   EXPECT_NEAR(plan.blocks.at(2)->length, 10, 1e-9);
 }
 
@@ -170,11 +171,11 @@ TEST(FeedsNotReached, SayHowFarTheyCome) {
   const machine::Machine machine = machine::default_machine();
   const Plan plan = plan_text("G1 X100 F60000\nG4 P0\nG1 X100.1 F6000\n", machine, kCard);
   EXPECT_NEAR(plan.blocks[0].planned.speed, machine.axes[0].max_velocity, 1e-6);
-  // v^2 = a s for half the way each.
+  // The speed rises over half of the way and falls over the other half: v^2 = a s.
   EXPECT_NEAR(plan.blocks[2].planned.speed, std::sqrt(machine.axes[0].max_acceleration * 0.1), 0.1);
 }
 
-// 128 ticks for each pulse of length would be 15.
+// 128 ticks per pulse of length would be 15 ticks, too few to decode the next line.
 TEST(ShortLines, TakeWhatTheCardNeedsToDecodeTheNext) {
   const auto ticks = [](unsigned axes) {
     const Plan plan = plan_text("G0 X0.0055\nX0.007\n", machine::default_machine(), {100'000'000, axes, true});
@@ -184,7 +185,8 @@ TEST(ShortLines, TakeWhatTheCardNeedsToDecodeTheNext) {
   EXPECT_EQ(ticks(4), 72U);
 }
 
-// The generator, else the accumulator, else chords; helices and other scales where these can.
+// Arcs go to the generator, else to the accumulator, else they become chords. Helices and unequal scales go only to an
+// engine that can make them.
 TEST(Arcs, GoToWhatTheCardHas) {
   const std::string flat = "G1 X10 F600\nG2 X20 I5\n";
   const std::string helix = "G1 X10 F600\nG2 X20 I5 Z1\n";
@@ -219,7 +221,8 @@ TEST(Arcs, GoToWhatTheCardHas) {
   EXPECT_EQ(geometry(flat, equal, false, false), Geometry::kChords);
 }
 
-// A circle of one pulse, which the accumulator in 4 directions would take over its centre, goes out as lines.
+// The accumulator in 4 directions would step through the centre of a circle of one pulse, so this circle is sent as
+// lines.
 TEST(Arcs, OfOnePulseGoOutAsLines) {
   const auto geometry = [](bool eight, const std::string& arc) {
     CardLimits card{kCard.clock_hz, 4};
@@ -234,7 +237,7 @@ TEST(Arcs, OfOnePulseGoOutAsLines) {
   EXPECT_EQ(geometry(false, two), Geometry::kArc);
 }
 
-// Half a turn between ends that 32 bits do not hold, though each of them is in range.
+// Half a turn between ends whose difference does not fit in 32 bits, although each of them is in range.
 TEST(Arcs, OfEndsTooFarApartGoOutAsLines) {
   const CardLimits card = with_arcs_by({kCard.clock_hz, 4}, ArcsBy::kAccumulator);
   const machine::Machine machine = machine_with({"axis.x.steps_per_mm=10000", "axis.y.steps_per_mm=10000"});

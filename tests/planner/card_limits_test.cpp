@@ -1,4 +1,4 @@
-// What the plan takes from the card: classes of pieces, shifts of the slew, engines.
+// Properties of the card that the plan uses: classes of pieces, shifts of the slew, engines.
 #include "trammel/planner/card_limits.hpp"
 
 #include <fmt/format.h>
@@ -37,9 +37,9 @@ TEST(PieceClasses, TellRapidsWhereTheCardHasThem) {
   }
 }
 
-// The shift of the longest piece. A hold may take half of each axis's 1,000 mm/s^2 (machine::hold_share()), and the
-// card takes hold_clocks() from full rate to rest: `full` mm/s along an axis take all of it, and each doubling halves
-// that.
+// The shift of the longest piece. A hold may use half of each axis's 1,000 mm/s^2 (machine::hold_share()), and the card
+// takes hold_clocks() from full rate to rest. A hold from `full` mm/s along an axis uses all of this half. Each halving
+// of the speed allows a shift by one more.
 TEST(SlewShifts, AreAsLargeAsTheAxesAllow) {
   const double full = 500 * hold_clocks(machine::default_machine(), kClock) / kClock;
   EXPECT_NEAR(full, 150, 10);

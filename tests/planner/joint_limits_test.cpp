@@ -1,4 +1,4 @@
-// Crossed belts: joints that two axes move, with limits of their own.
+// Crossed belts: joints that two axes move, and that have their own limits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,7 +44,8 @@ TEST(JointLimits, BindWhatMovesTheJoint) {
   expect(first_on_belts("G0 X10\n", fast), 150, 1000, INFINITY);
 }
 
-// At a quarter turn from X to Y joint B changes by 2 mm a mm of path, joint A not at all.
+// At a quarter turn from X to Y the velocity of joint B changes by 2 mm/s per mm/s along the path; that of joint A does
+// not change.
 TEST(JointLimits, BindTheSpeedInCorners) {
   const auto jump = [](const std::vector<std::string>& more) {
     std::vector<std::string> overrides = {"kinematics.name='corexy'", "motion.junction_deviation=0.05"};

@@ -11,15 +11,15 @@ namespace {
 using planner::Span;
 
 struct Grid {
-  std::vector<double> step;          // mm, of each interval
+  std::vector<double> step;          // length of each interval, mm
   std::vector<double> acceleration;  // limits in each interval
   std::vector<double> jerk;
-  std::vector<double> most;  // square of the speed, at each node
+  std::vector<double> most;  // largest square of the speed at each node
   std::vector<std::size_t> span;
 };
 
-// Squares of speeds at nodes b_0 .. b_n; acceleration is constant between. Newton's method on the time with logarithmic
-// barriers before the limits.
+// Unknowns are the squares of the speeds at nodes, b_0 .. b_n; the acceleration between nodes is constant. Minimises
+// the time by Newton's method with logarithmic barriers at the limits.
 class Interior {
  public:
   Interior(const Grid& grid, std::vector<double> squares) : grid_(grid), b_(std::move(squares)) {}
@@ -50,7 +50,7 @@ class Interior {
     return (b[k + 1] - b[k]) / (2 * grid_.step[k]);
   }
 
-  // Of the jerk in half of the intervals beside node k.
+  // Largest change of the acceleration at node k: the jerk limit over half of each interval beside it.
   double swing(const std::vector<double>& b, std::size_t k) const {
     double sum = 0;
     if (k > 0) sum += grid_.jerk[k - 1] * pass(grid_.step[k - 1], b[k - 1], b[k]) / 2;
@@ -61,7 +61,7 @@ class Interior {
     return (k < intervals() ? acceleration(b, k) : 0) - (k > 0 ? acceleration(b, k - 1) : 0);
   }
 
-  // Infinite outside the limits.
+  // Time with barriers; infinite outside the limits.
   double merit(const std::vector<double>& b) const {
     double sum = 0;
     double logs = 1;
@@ -90,7 +90,8 @@ class Interior {
     return sum;
   }
 
-  // Gradient and a positive Hessian (of the barriers before the jerk what is not convex is left out): bands of 3.
+  // Gradient, and a positive Hessian in bands of 3. The non-convex terms of the barriers at the jerk limits are left
+  // out.
   void differentiate() {
     const std::size_t n = b_.size();
     g_.assign(n, 0);
@@ -157,7 +158,7 @@ class Interior {
   bool step() {
     differentiate();
     const std::size_t n = b_.size();
-    // The ends stay at 0.
+    // The speeds at the ends stay 0.
     std::vector<std::array<double, 3>> l(n);
     std::vector<double> d(n, 0);
     for (std::size_t i = 1; i + 1 < n; ++i) {
@@ -200,7 +201,7 @@ class Interior {
   std::vector<std::array<double, 3>> h_;  // row i: (i, i), (i, i - 1), (i, i - 2)
 };
 
-// Borders at shares 0 .. 1 of each span.
+// Nodes at the shares, 0 .. 1, of each span.
 Grid grid_of(const std::vector<Span>& spans, const std::vector<std::vector<double>>& shares) {
   Grid grid;
   for (std::size_t i = 0; i < spans.size(); ++i) {
@@ -219,7 +220,7 @@ Grid grid_of(const std::vector<Span>& spans, const std::vector<std::vector<doubl
   return grid;
 }
 
-// A lone move within all limits, slower by a share: squares of speeds at the nodes.
+// Squares of the speeds at the nodes for a single move well within all limits.
 std::vector<double> slow_start(const Grid& grid) {
   double length = 0, speed = std::numeric_limits<double>::infinity(), acceleration = speed, jerk = speed;
   for (std::size_t k = 0; k < grid.step.size(); ++k) {
@@ -230,7 +231,7 @@ std::vector<double> slow_start(const Grid& grid) {
   }
   std::vector<double> squares{0};
   double place = 0;
-  // v = top * sin^(4/3): near rest s^(2/3), as jerk has it.
+  // v^2 = 0.3 * top^2 * sin^(4/3): near rest v is proportional to s^(2/3), as under constant jerk.
   const double pi = 3.14159265358979323846;
   double top = std::min({speed, std::sqrt(acceleration * length) / pi, std::cbrt(jerk * length * length) / (2 * pi)});
   for (std::size_t k = 0; k < grid.step.size(); ++k) {
@@ -256,7 +257,7 @@ double least_seconds(const std::vector<Span>& spans, std::size_t nodes) {
   Grid grid = grid_of(spans, shares);
   Interior coarse(grid, slow_start(grid));
   coarse.solve(1e-2);
-  // Nodes at equal times of that.
+  // Nodes at equal time intervals of the coarse solution.
   const std::vector<double>& b = coarse.squares();
   const double seconds = coarse.seconds();
   std::size_t k = 0;

@@ -1,4 +1,4 @@
-// The S-curve plan against the least time, which an optimiser finds that knows no ramps.
+// The S-curve plan against the least time, found by an optimiser that does not assume ramps.
 #include "least_time.hpp"
 
 #include <gtest/gtest.h>
@@ -31,8 +31,8 @@ TEST(LeastTime, OfAZigzagIsThePlans) {
   EXPECT_NEAR(seconds(spans) / least, 1, 1e-3);
 }
 
-// One acceleration and jerk in a program; speeds that differ, corners. The least time has some acceleration at places
-// where the plan has none: where a ramp ends at a cap, or two short ramps meet.
+// Each program has one acceleration and jerk, different speeds, and corners. The least time keeps some acceleration at
+// places where the plan has none: where a ramp ends at a limit of speed, or where two short ramps meet.
 TEST(LeastTime, OfRandomProgramsIsLittleLessThanThePlans) {
   Random random(101);
   double worst = 0;
@@ -47,7 +47,7 @@ TEST(LeastTime, OfRandomProgramsIsLittleLessThanThePlans) {
     }
     spans.back().exit_speed = 0;
     const double gap = seconds(spans) / least_seconds(spans, 800) - 1;
-    EXPECT_GT(gap, -0.01) << i;  // measured -0.007: few nodes in short ramps beside a long way
+    EXPECT_GT(gap, -0.01) << i;  // measured: -0.007, by few nodes in short ramps beside a long way
     worst = std::max(worst, gap);
     mean += gap / 20;
   }

@@ -1,5 +1,5 @@
-// The plan over many blocks: times against single moves and against a computation of its own over the whole program,
-// speeds in curves, stops.
+// The plan over many blocks: times against single moves and against a second computation over the whole program, speeds
+// in curves, stops.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace trammel::planner {
 namespace {
 
-// The limits of the comparison.
+// A machine with 300 mm/s and 3,000 mm/s^2.
 machine::Machine fast_machine(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = {"motion.junction_deviation=0.02"};
   for (const char* axis : {"x", "y", "z", "e"}) {
@@ -40,7 +40,8 @@ double seconds_of(const std::vector<Planned>& blocks) {
   return sum;
 }
 
-// As the feed generator makes them: a rate for 32 clocks, in force 6 clocks after the last tick of the piece before.
+// Clocks of the pieces in the feed generator, which holds each rate for 32 clocks. The first rate of a piece takes
+// effect 6 clocks after the last tick of the previous piece; this constant delay is left out.
 double feed_clocks(const std::vector<Planned>& blocks) {
   double clocks = 0;
   for (const Planned& block : blocks) {
@@ -103,7 +104,7 @@ TEST(LookAhead, CollinearBlocksTakeTheTimeOfOne) {
   ASSERT_EQ(many.size(), 101U);
   EXPECT_NEAR(seconds_of(many) / seconds_of(one), 1, 0.001);
   EXPECT_NEAR(feed_clocks(many) / feed_clocks(one), 1, 0.001);
-  // 0.2 s at 50 mm/s and a ramp of 0.05 s; starts and stops at the rate of one tick from rest save 0.3 ms each.
+  // 0.2 s at 50 mm/s and a ramp of 0.05 s. A start and a stop at the rate of one tick from rest each save 0.3 ms.
   EXPECT_NEAR(seconds_of(one), 0.25 - 0.0006, 0.0001);
   const std::vector<Planned> stops = blocks_of("G61.1\n" + line_of_chords(10, 0.1, 3000), machine);
   EXPECT_GT(seconds_of(stops), 1.9) << "exact stops";
@@ -117,7 +118,7 @@ TEST(LookAhead, ASquareOfChordsTakesTheTimeOfItsSides) {
   EXPECT_NEAR(sides, 16.2, 0.1);
 }
 
-// The largest share that an axis has of a change from one direction to the other.
+// Largest share of an axis in the change from one direction to the other.
 double axis_share(const Planned& from, const Planned& to) {
   const double x = to->entry[0] - from->exit[0];
   const double y = to->entry[1] - from->exit[1];
@@ -132,7 +133,7 @@ TEST(LookAhead, CirclesOfChordsKeepTheirAcceleration) {
       const std::vector<Planned> blocks = blocks_of(circle_of_chords(radius, chord, 60000), machine);
       double most = 0;
       for (std::size_t i = 2; i + 2 < blocks.size(); ++i) {
-        // Of the directions of its two corners the one in which the axes allow more.
+        // Of the two corners of the block, the one at which the axes allow more.
         const double share = std::min(axis_share(blocks[i - 1], blocks[i]), axis_share(blocks[i], blocks[i + 1]));
         most = std::max(most, blocks[i].planned.speed * blocks[i].planned.speed / radius * share / 1000);
       }
@@ -155,9 +156,9 @@ TEST(LookAhead, PlannedSecondsAreThoseOfThePieces) {
   }
 }
 
-// Over the whole program at once: corners by angles and trigonometry, v^2 by a backward and a forward pass, the time of
-// each block from the two speeds. On an arc of radius r, where the acceleration is a in all, v^2 = a r sin(2 s / r)
-// from rest.
+// Time of the whole program at once: corners by angles and trigonometry, v^2 by a backward and a forward pass, the time
+// of each block from its two speeds. On an arc of radius r with a total acceleration of a, v^2 = a r sin(2 s / r) from
+// rest.
 class WholeProgram {
  public:
   explicit WholeProgram(const machine::Machine& machine) : machine_(machine) {}
@@ -227,7 +228,7 @@ class WholeProgram {
   }
 
   static bool is_arc(const Block& block) { return block.geometry == Geometry::kArcChord; }
-  // Of an arc in X and Y.
+  // For an arc in X and Y.
   double radius_times_acceleration(const Block& arc) const {
     return arc.exact.radius_start * machine_.axes[0].max_acceleration;
   }
@@ -281,7 +282,7 @@ TEST(LookAhead, ChordsTakeTheTimeOfTheWholeProgram) {
   }
 }
 
-// Arcs of 10 mm and less that are tangent to lines and to one another, whole circles, feeds that change on the way.
+// A program with arcs of up to 10 mm that are tangent to lines and to each other, full circles, and changing feeds.
 std::string arcs_and_lines(unsigned seed) {
   std::mt19937 random(seed);
   std::string text = "G1 F18000 X1\nG91\n";
@@ -305,7 +306,7 @@ std::string arcs_and_lines(unsigned seed) {
   return text;
 }
 
-// An arc's acceleration is what its speed leaves at each moment.
+// The acceleration along an arc is the part that the centripetal acceleration leaves at each moment.
 TEST(LookAhead, ArcsTakeTheTimeOfTheWholeProgram) {
   double worst = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -322,7 +323,7 @@ TEST(LookAhead, ArcsTakeTheTimeOfTheWholeProgram) {
 TEST(LookAhead, ALoneCircleTakesTheTimeOfItsSpeeds) {
   const machine::Machine machine = machine::default_machine();
   const std::vector<Planned> blocks = blocks_of("G2 I10 F60000\n", machine);
-  // With v^2 / r = a at the most. From rest v^2 = a r sin(2 s / r), up to pi r / 4: that takes sqrt(r / a) times the
+  // v^2 / r is at most a. From rest v^2 = a r sin(2 s / r), up to s = pi r / 4. This takes sqrt(r / a) times the
   // integral of 1 / sqrt(sin 2x).
   constexpr double kRadius = 10;
   constexpr double kIntegral = 1.3110287771460599;  // from 0 to pi / 4
@@ -334,7 +335,7 @@ TEST(LookAhead, ALoneCircleTakesTheTimeOfItsSpeeds) {
   EXPECT_NEAR(seconds_of(blocks) / WholeProgram(machine).seconds(blocks), 1, 0.005);
 }
 
-// What a short window costs on 100 mm in chords of 0.02 mm.
+// Time that a short window costs on 100 mm in chords of 0.02 mm.
 TEST(LookAhead, AShortWindowIsSlowerAndSaysSo) {
   const std::string text = line_of_chords(100, 0.02, 18000);
   const auto share = [&](int window) {
@@ -383,7 +384,7 @@ TEST(Stops, AreWhereTheyMustBe) {
 TEST(Junctions, FollowTheDeviationFormula) {
   const machine::Machine machine = machine_with({"motion.junction_deviation=0.05"});
   const std::vector<Planned> blocks = blocks_of("G1 F6000 X50\nY50\nX100\n", machine);
-  // A quarter turn: each axis's acceleration along the difference of the directions is sqrt(2) of its own.
+  // A quarter turn: along the difference of the directions the axes allow sqrt(2) times their own acceleration.
   const double half = std::cos(driver::kPi / 4);
   const double expected = std::sqrt(1000 * std::sqrt(2) * 0.05 * half / (1 - half));
   EXPECT_NEAR(blocks[0].planned.velocity_jump, expected, expected * 0.002);

@@ -1,4 +1,4 @@
-// Outputs that a program switches: OUTPUT commands at their place between the paths, which do not change by them.
+// Outputs that a program switches: OUTPUT commands come at their place between the paths and do not change the paths.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST(PathOutputs, OfSeveralInARowTheLastWins) {
   EXPECT_TRUE(is(outputs_of(plan.blocks[0])[0], 8, 5));
 }
 
-// Chords without a stop, a word before each of them: more words than look-ahead has room for.
+// Chords without a stop, with a word of outputs before each: more words than the look-ahead can hold.
 TEST(PathOutputs, ThePlanIsTheSameWithThem) {
   machine::Machine machine = machine_with_outputs();
   machine::apply_override(machine, "motion.window=64");
@@ -105,7 +105,7 @@ TEST(PathOutputs, WhatTheCardCannotSwitchOnIsRefused) {
   ASSERT_TRUE(few.error);
   EXPECT_THAT(few.error->message, HasSubstr("output 3 of the machine file: the card has 3"));
   EXPECT_FALSE(plan_text(program, machine_with_outputs(), card_with(4)).error);
-  // To switch off what cannot be on is done already.
+  // An output that the card lacks is never on, so switching it off needs no command.
   const Plan off = plan_text("M5\nM9\nG1 X1 F60\nM2\n", machine_with_outputs(), card_with(0));
   EXPECT_FALSE(off.error);
   for (const Planned& block : off.blocks) EXPECT_TRUE(outputs_of(block).empty());

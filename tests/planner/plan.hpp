@@ -1,4 +1,4 @@
-// A program's blocks with their commands, all at once, for tests.
+// Plans a whole program at once, for tests: its blocks with their commands.
 #pragma once
 
 #include <cstdint>
@@ -69,13 +69,13 @@ std::vector<T> commands(const Planned& planned) {
   return found;
 }
 
-// The blocks between two stops have their feed ticks together.
+// The blocks between two stops; their feed ticks are counted together.
 struct Stretch {
   std::size_t first = 0;
   std::size_t last = 0;
   std::uint64_t feed_ticks = 0;
   std::uint64_t path_ticks = 0;
-  bool piece_first = true;  // each command of geometry comes when a piece for its first tick has come
+  bool piece_first = true;  // each command of geometry comes after a piece for its first tick
 };
 
 inline std::uint64_t path_ticks_of(const driver::Command& command) {

@@ -1,4 +1,4 @@
-// Planning ends: its work is counted and held against its bounds, over random programs on random machines.
+// Planning always ends: its work is counted and compared with its bounds, for random programs on random machines.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ void expect_within_bounds(const PlanWork& work) {
   EXPECT_LE(work.ramps, SCurvePlan::kMaxRamps * work.window_spans);
 }
 
-// The lines' feeds differ from the arc's by their last bit.
+// The feeds of the lines and of the arc differ in their last bit.
 TEST(PlanWork, ALineBehindAnArcAtTheSameFeedEnds) {
   machine::Machine machine = equal_axes(200, 3'000, 30'000);
   machine.motion.junction_deviation = 0.05;
@@ -67,7 +67,7 @@ TEST(PlanWork, ALineBehindAnArcAtTheSameFeedEnds) {
   expect_within_bounds(planning.work);
 }
 
-// One phase covers more blocks than the ring has behind the window.
+// One phase covers more blocks than the ring buffer holds behind the window.
 TEST(PlanWork, AStraightLineOfManyBlocksEnds) {
   struct {
     double jerk;
@@ -85,7 +85,7 @@ TEST(PlanWork, AStraightLineOfManyBlocksEnds) {
   }
 }
 
-// Axes that are alike or not, from 10 to 3,000 steps/mm, whose jerk is 5 to 500 times the acceleration.
+// A machine with equal or different axes, of 10 to 3,000 steps/mm; the jerk is 5 to 500 times the acceleration.
 machine::Machine random_machine(Random& random) {
   machine::Machine machine = machine::default_machine();
   const bool alike = random.below(2) == 0;
@@ -108,7 +108,7 @@ machine::Machine random_machine(Random& random) {
   return machine;
 }
 
-// Length of the next motion: of all sizes, equal and tiny, long, tiny, and all of these by turns.
+// Length of the next motion. `kind` 0: any size; 1: equal and tiny; 2: long; 3: tiny; 4 and 5: one of these at random.
 double random_length(Random& random, std::size_t kind, double tiny) {
   switch (kind < 4 ? kind : random.below(4)) {
     case 0:
@@ -122,7 +122,7 @@ double random_length(Random& random, std::size_t kind, double tiny) {
   }
 }
 
-// Lines and arcs with other axes on some, rapids, dwells, exact stops, new feeds.
+// Lines and arcs, some with further axes; rapids, dwells, exact stops, new feeds.
 std::string random_program(Random& random, double velocity) {
   const double feed = random.below(2) == 0 ? 30 * velocity : random.logarithmic(60, 30'000);
   std::string program = fmt::format("G21 G90 G17 G64 G1 F{:.0f}\n", feed);
@@ -153,7 +153,7 @@ std::string random_program(Random& random, double velocity) {
   return program;
 }
 
-// Repeat one with TRAMMEL_SEED. With TRAMMEL_LONG a hundred times as many.
+// TRAMMEL_SEED repeats one program; TRAMMEL_LONG runs a hundred times as many.
 TEST(PlanWork, IsWithinItsBoundsForRandomPrograms) {
   const char* const wanted = std::getenv("TRAMMEL_SEED");
   const std::uint64_t first = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 0;

@@ -1,4 +1,4 @@
-// Blocks a second on one core: chords of 0.02 mm through reader, look-ahead, speed plan, quantiser and encoding.
+// Blocks per second on one core: chords of 0.02 mm through reader, look-ahead, speed plan, quantiser and encoding.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -14,7 +14,7 @@ using namespace trammel;
 
 constexpr int kChords = 200'000;
 
-// A line, or a spiral whose radius grows from 2 mm by 1 mm a turn.
+// A line, or a spiral whose radius grows from 2 mm by 1 mm per turn.
 std::string program(bool spiral) {
   std::string text = "G1 F18000\n";
   std::array<char, 64> line{};

@@ -1,4 +1,4 @@
-// PlannerSettings: what they change of a plan.
+// Effects of PlannerSettings on a plan.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -10,7 +10,7 @@
 namespace trammel::planner {
 namespace {
 
-// A program's blocks, planned with settings; `end` is where the ticks of its paths end.
+// The blocks of a program, planned with `settings`; `end` receives the state of the path ticks at its end.
 std::vector<Planned> blocks_with(const PlannerSettings& settings, const std::string& text, PathTicks* end = nullptr,
                                  const gcode::Coordinates& start = {}) {
   const machine::Machine machine = machine::default_machine();
@@ -46,7 +46,7 @@ TEST(Settings, MeanwhileIsCalledForEachBlock) {
   EXPECT_THROW(blocks_with(settings, "G1 X10 F600\n"), std::runtime_error);
 }
 
-// A path gets the part of a tick that the one before has left.
+// A path takes over the fraction of a tick that the path before has left.
 TEST(Settings, ProgramsInPartsHaveTheTicksOfTheWhole) {
   const std::string first = "G1 X0.3701 F600\nX1.10034\nG4 P0\n";
   const std::string second = "G1 X1.4707 F600\nX2.3333\nG4 P0\nG0 X5.5557\n";

@@ -61,7 +61,7 @@ Pulses line_pulses(const Planned& segment) {
   return sum;
 }
 
-// And the arcs in chords: in their plane by the rule of their increments, outside it as lines.
+// Pulses of the lines and of the arcs in chords: in their plane by the rule of their increments, outside it as lines.
 Pulses pulses_of(const Planned& segment) {
   Pulses sum = line_pulses(segment);
   for (const ArcChordCommand& arc : commands<ArcChordCommand>(segment)) {
@@ -90,7 +90,7 @@ void encode_all(const Planned& segment) {
 
 bool is_sound(const Stretch& stretch) { return stretch.feed_ticks == stretch.path_ticks && stretch.piece_first; }
 
-// What holds for every moving segment.
+// Checks that apply to every moving segment.
 void expect_sound(const Planned& segment) {
   EXPECT_NO_THROW(encode_all(segment));
   bool geometry = false;
@@ -112,7 +112,7 @@ void expect_sound(const Planned& segment) {
   }
 }
 
-// Largest rate in ticks a second.
+// Largest rate, ticks/s.
 double top_rate(const Planned& segment, std::uint32_t clock_hz = kClock) {
   double top = 0;
   for (const FeedCommand& piece : commands<FeedCommand>(segment)) {
@@ -131,14 +131,14 @@ TEST(Planner, LineHasFeedThenGeometry) {
   ASSERT_EQ(line.commands.size(), 4U);
   expect_sound(line);
   EXPECT_EQ(commands<LineCommand>(line)[0].mask, 3);
-  // 11.18 mm at 80 steps/mm, 128 ticks each.
+  // 11.18 mm at 80 steps/mm and 128 ticks per step.
   EXPECT_EQ(path_ticks(line), static_cast<std::uint64_t>(std::llround(std::hypot(800, 400) * 128)));
   EXPECT_NEAR(line.planned.seconds, std::hypot(10, 5) / 50 + 50 / 1000.0 * 0.894, 0.002);
   EXPECT_TRUE(std::holds_alternative<EndCommand>(segments[1].commands.at(0)));
 }
 
 TEST(Planner, FeedHoldsAlongThePath) {
-  // ticks a second = feed * N / length.
+  // ticks/s = feed * N / length.
   const auto xy = plan_of("G1 X30 Y40 F600");
   EXPECT_NEAR(top_rate(xy[0]) / static_cast<double>(path_ticks(xy[0])), 10.0 / 50, 1e-6);
   const auto with_e = plan_of("G1 X30 Y40 E7 F600");
@@ -150,7 +150,7 @@ TEST(Planner, FeedHoldsAlongThePath) {
 }
 
 TEST(Planner, AxisLimitsBindTheFeed) {
-  // Z may do 100 mm/s: along (3, 0, 4) that is 125 mm/s.
+  // Z is limited to 100 mm/s, which is 125 mm/s along (3, 0, 4).
   const auto segments = plan_of("G0 X60 Z80");
   EXPECT_NEAR(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])), 100.0 / 80, 1e-4);
   const auto fast = plan_of("G1 X100 F60000");
@@ -159,7 +159,7 @@ TEST(Planner, AxisLimitsBindTheFeed) {
 
 TEST(Planner, PulseShapeBindsTheSpeed) {
   Machine machine = default_machine();
-  apply_override(machine, "axis.x.step_length_ns=500000");  // with the space 502 us: 1992 pulses a second
+  apply_override(machine, "axis.x.step_length_ns=500000");  // with the space 502 us: 1992 pulses/s
   const auto segments = plan_of("G0 X100", machine);
   EXPECT_LE(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])) * 8000, 1992.0);
   EXPECT_GE(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])) * 8000, 1800.0);
@@ -247,8 +247,8 @@ TEST(Planner, CentripetalAccelerationIsLimited) {
   EXPECT_GE(unit_steps * unit_steps / 80, 1000.0 * 80 / 2 * 0.89);
 }
 
-// The path between two steps in 8 directions is 1 to sqrt(2) pulses long; its acceleration is largest on the diagonal,
-// v^2 / r there and as much along it.
+// In 8 directions the path between two steps is 1 to sqrt(2) pulses long. The acceleration is largest on the diagonal:
+// v^2 / r across the path, and as much along it.
 TEST(Planner, ArcsGoInEightDirectionsWhereTheCardHasThem) {
   CardLimits card{kClock, 4};
   const std::string text = "G2 I1 F60000\nG2 X2 Y2 I2 F600\n";
@@ -268,9 +268,9 @@ TEST(Planner, ArcsGoInEightDirectionsWhereTheCardHasThem) {
   EXPECT_LT(commands<ArcCommand>(eight.blocks[1]).at(0).path_ticks,
             commands<ArcCommand>(without.blocks[1]).at(0).path_ticks);
   const double steps = top_rate(eight.blocks[0]) * static_cast<double>(circle.path_ticks) /
-                       static_cast<double>(circle.ticks);                 // a second
-  const double diagonal = steps * std::sqrt(2.0);                         // pulses a second along the path
-  const double acceleration = std::sqrt(2.0) * diagonal * diagonal / 80;  // across and along the path
+                       static_cast<double>(circle.ticks);                 // steps/s
+  const double diagonal = steps * std::sqrt(2.0);                         // pulses/s along the path
+  const double acceleration = std::sqrt(2.0) * diagonal * diagonal / 80;  // across and along the path, pulses/s^2
   EXPECT_LE(acceleration, 1000.0 * 80 * 1.001);
   EXPECT_GE(acceleration, 1000.0 * 80 * 0.6);
 }
@@ -298,7 +298,7 @@ TEST(Planner, UnequalScalesGoOutAsChords) {
     EXPECT_EQ(arc->geometry, Geometry::kChords);
     const auto lines = commands<LineCommand>(arc);
     ASSERT_GT(lines.size(), 10U);
-    // Every corner within a rounded pulse of the ellipse, every chord's middle within 0.25 pulse more.
+    // Every corner is within the rounding to a pulse from the ellipse, every chord's middle within 0.25 pulse more.
     const double centre_x = static_cast<double>(arc->centre_x) / 256;
     const double centre_y = static_cast<double>(arc->centre_y) / 256;
     Pulses here = arc->start;
@@ -335,7 +335,7 @@ TEST(Planner, TinyAndHugeArcsEndWhereTheyShould) {
   }
 }
 
-// Whatever stands in a program, it is refused with its line or planned soundly.
+// Any program is either refused with the number of its line or has a sound plan.
 TEST(Planner, RandomTextIsRefusedOrPlanned) {
   std::size_t planned = 0;
   const std::vector<std::string> words = {
@@ -350,7 +350,7 @@ TEST(Planner, RandomTextIsRefusedOrPlanned) {
     const int lines = *rc::gen::inRange(1, 5);
     for (int line = 0; line < lines; ++line) {
       const int count = *rc::gen::inRange(1, 4);
-      // A line that holds in any state now and then, so that some programs get through.
+      // Half of the lines are valid in any state, so that some programs are accepted.
       if (*rc::gen::arbitrary<bool>()) {
         text += *rc::gen::elementOf(sound) + "\n";
         continue;
@@ -392,10 +392,10 @@ TEST(Planner, RandomLinesAreSound) {
       for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
         RC_ASSERT(made[axis] == segment->end[axis] - segment->start[axis]);
       }
-      // No axis above its velocity: ticks a second times pulses a tick.
+      // No axis exceeds its velocity: ticks/s times pulses per tick.
       const Machine machine = default_machine();
       for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-        // The speed is the unrounded path's: ends and ticks are rounded.
+        // The limit applies to the path before its ends and ticks are rounded.
         const double pulses =
             static_cast<double>(std::abs(made[axis]) - 1) / static_cast<double>(path_ticks(segment) + 1);
         RC_ASSERT(top_rate(segment, clock_hz) * pulses <= machine.axes[axis].max_velocity * 80 * 1.000001);

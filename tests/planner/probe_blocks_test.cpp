@@ -1,4 +1,4 @@
-// Blocks around probes, and what is refused before it is known or needed.
+// Blocks around probes, and refusals before the result of a probe is known.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -20,7 +20,7 @@ CardLimits card_with_path_commands() {
   return card;
 }
 
-// A program's reader and builder.
+// The reader and the builder of a program.
 struct Building {
   Building(const std::string& program, const machine::Machine& of, const CardLimits& card = card_with_path_commands())
       : text(program), machine(of), lines(text, "p.ngc"), reader(lines, machine), blocks(reader, machine, card) {}
@@ -98,7 +98,7 @@ TEST(ProbeBlocks, KeepWithinSoftLimits) {
   EXPECT_EQ(gcode::describe(*it.blocks.error()), "p.ngc:1: X30 is beyond the axis's max of 20 (machine coordinates)");
 }
 
-// Z-3 is where the probe trips at the latest.
+// The probe trips at Z-3 at the latest.
 TEST(ProbeBlocks, SoftLimitsOfWhatItDecidesHoldWhenThatIsKnown) {
   const auto error_of = [](const std::string& line, bool known) {
     Building it("G38.2 Z-3 F60\n" + line + "\n", probing_machine({"axis.x.max=20"}));

@@ -1,4 +1,4 @@
-// PWM commands: before the block that they are for, with the scale of its ticks, and none where nothing changes.
+// PWM commands: before the block to which they apply, with the scale of its ticks, and none if nothing changes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ TEST(Pulses, StandWhereTheyChange) {
   }
 }
 
-// The gain that the card multiplies the rate with gives the programmed duty at the programmed feed.
+// The gain by which the card multiplies the rate gives the programmed duty at the programmed feed.
 TEST(Pulses, TheScaleIsThatOfThePathsTicks) {
   const Plan plan =
       plan_text("M4 S500\nG1 X10 F1200\nY10 F600\nG1 X0 Y0 Z5\nM2\n", laser_machine(), card_for_pulses(true));
@@ -66,7 +66,7 @@ TEST(Pulses, TheScaleIsThatOfThePathsTicks) {
   EXPECT_EQ(followed, 3U);
 }
 
-// What follows the speed is dark at rest by itself. A new feed has another scale.
+// A duty that follows the speed is 0 at rest, so a dwell needs no command. A new feed needs a new scale.
 TEST(Pulses, ThatFollowTheSpeedChangeWithTheFeedAlone) {
   const Plan plan = plan_text("M4 S500\nG1 X10 F1200\nX20\nG4 P1\nX30\nX40 F1300\nM3 X50\nM4 S0 X60\nM2\n",
                               laser_machine(), card_for_pulses(true));

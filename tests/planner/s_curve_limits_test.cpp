@@ -1,4 +1,4 @@
-// The S-curve plan where limits differ from span to span: at random, on curves, on arcs, by rounding.
+// The S-curve plan with limits that differ from span to span: at random, on curves, on arcs, by rounding.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using test::seconds;
 using test::Spans;
 using test::with_limits;
 
-// Limits at random. Few programs take longer than one rise a ramp more.
+// Random limits. Few programs take longer than the trapezoid plus one rise of acceleration per ramp.
 TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
   Random random(9);
   int beyond = 0;
@@ -38,12 +38,13 @@ TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
     worst = std::max(worst, share);
   }
   EXPECT_LE(beyond, 4);     // measured: 4
-  EXPECT_LE(worst, 1.018);  // 1.0176
+  EXPECT_LE(worst, 1.018);  // measured: 1.0176
   RecordProperty("beyond", std::to_string(beyond));
   RecordProperty("worst", std::to_string(worst));
 }
 
-// Chords of a curve on two equal axes: the path has most where it goes at 45 degrees, so limits change all along.
+// Chords of a curve on two equal axes. The limits along the path are largest at 45 degrees, so they change all along
+// the curve.
 Spans turning_chords(Random& random, const Limits& limits) {
   Spans spans;
   const double radius = random.logarithmic(1, 200);
@@ -84,7 +85,7 @@ TEST(SCurvePlan, LimitsThatTurnCostAtMostOneRiseARamp) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-// Arcs among straight spans; on them the acceleration is what the speed of the moment leaves.
+// Arcs among straight spans. On an arc the acceleration is limited to the part that the present speed leaves.
 Spans with_arcs(Random& random, const Limits& limits) {
   Spans spans = moves(random, limits, true);
   for (Span& span : spans) {
@@ -125,20 +126,20 @@ TEST(SCurvePlan, ArcsUseTheirAccelerationAtEverySpeed) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-// How an arc is passed in the least time: each moment has the jerk along the path that v^3 / r^2 and 3 v a / r leave,
-// and the acceleration that v^2 / r leaves. Integrated in small steps of time.
+// The least time on an arc. At each moment the jerk along the path is the part that v^3 / r^2 and 3 v a / r leave, and
+// the acceleration is the part that v^2 / r leaves. Integrates in small steps of time.
 class LeastOnArc {
  public:
   LeastOnArc(double radius, double acceleration, double jerk)
       : radius_(radius), acceleration_(acceleration), jerk_(jerk) {}
 
-  // From rest to a speed at which there is no acceleration.
+  // A ramp from rest to a speed, with an acceleration of 0 at both ends.
   struct Ramp {
     double seconds = 0;
     double length = 0;
   };
   Ramp ramp(double top, double step) const {
-    std::vector<State> fall{{top, 0}};  // seen backwards from the top
+    std::vector<State> fall{{top, 0}};  // backwards from the top speed
     while (fall.back().speed > 0) fall.push_back(moved(fall.back(), step, -1));
     Ramp ramp;
     State now{0, 0};
@@ -166,7 +167,7 @@ class LeastOnArc {
     const double jerk = std::max(0.0, std::sqrt(jerk_ * jerk_ - swung * swung) - turned);
     const double across = turn * from.speed;
     const double left = std::sqrt(std::max(0.0, acceleration_ * acceleration_ - across * across));
-    // With no jerk along the path.
+    // Largest acceleration; at its second bound no jerk along the path is left.
     const double most = std::min(left, std::sqrt(std::max(0.0, jerk_ * jerk_ - turned * turned)) / (3 * turn));
     const double acceleration = std::min(from.acceleration + jerk * step, most);
     return {from.speed + direction * (from.acceleration + acceleration) / 2 * step, acceleration};
@@ -201,7 +202,7 @@ TEST(SCurvePlan, RampsOnArcsTakeLittleMoreThanEachMomentAllows) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-// Lines and arcs at one feed, which differ by rounding: length / (length / feed) is not always the feed.
+// Lines and arcs at one feed. Their speeds differ by rounding, because length / (length / feed) is not always the feed.
 Spans at_one_feed(Random& random, const Limits& limits) {
   Spans spans;
   for (std::size_t i = 4 + random.below(20); i > 0; --i) {

@@ -1,4 +1,4 @@
-// S-curves as the card's pieces: from the program to what the feed generator does with them, by its page's rules.
+// S-curves as pieces of the card: from the program to the ticks of the feed generator, by the rules of its page.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,11 +31,11 @@ std::vector<driver::FeedCommand> pieces_of(const std::string& text, const machin
   return pieces;
 }
 
-// What the feed generator makes of a piece.
+// The result of a piece in the feed generator.
 struct Made {
-  double first = 0;  // ticks a clock
+  double first = 0;  // first rate, ticks per clock
   double last = 0;
-  double gain = 0;  // of the last update
+  double gain = 0;  // gain of the last update
   double clocks = 0;
 };
 
@@ -59,21 +59,21 @@ Made make(const driver::FeedCommand& piece) {
 }
 
 TEST(SCurvePieces, AMoveHasSevenOfThemAndItsTime) {
-  // 100 mm/s after 0.12 s and 6 mm.
+  // The speed is 100 mm/s after 0.12 s and 6 mm.
   const machine::Machine machine = machine_with_jerk(50'000);
   const std::vector<driver::FeedCommand> pieces = pieces_of("G1 X100 F6000", machine);
   ASSERT_EQ(pieces.size(), 7U);
   double clocks = 0;
   for (const driver::FeedCommand& piece : pieces) clocks += make(piece).clocks;
   const double seconds = 100.0 / 100 + 100.0 / 1000 + 1000.0 / 50'000;
-  // The last tick is at the floor, 1.5 ms sooner than on the curve.
+  // The last tick runs at the floor, so it is 1.5 ms earlier than on the curve.
   EXPECT_NEAR(clocks / kClock, seconds - 0.0015, 1e-4);
   const Plan plan = plan_text("G1 X100 F6000", machine, {kClock, 4, true});
   EXPECT_NEAR(plan.blocks[0].planned.seconds, clocks / kClock, 1e-5);
 }
 
-// The way of a lone move, by the seven phases' own formulas: jerk for r seconds, none for c, -jerk for r, v for the
-// rest, and back.
+// Distance over time of a single move, by the formulas of its seven phases: jerk for r seconds, no jerk for c seconds,
+// -jerk for r seconds, constant speed, and the same in reverse.
 struct ClosedForm {
   double length, jerk, r, c, cruise;
 
@@ -100,8 +100,8 @@ struct ClosedForm {
   }
 };
 
-// Where the closed form has them, within 0.0125 % of the time; but the last tick, 1/128 of a pulse here, does not take
-// three times as long as the one before it.
+// Ticks come at the times of the closed form, within 0.0125 % of the total time, except the last tick (1/128 of a pulse
+// here). It takes 1 / floor instead of the 3 / floor of the closed form.
 TEST(SCurvePieces, LoneMovesAreWhereTheClosedFormIs) {
   const struct {
     double speed, acceleration, jerk;
@@ -126,7 +126,7 @@ TEST(SCurvePieces, LoneMovesAreWhereTheClosedFormIs) {
           piece.ticks = k;
           const double seconds = (clocks + make(piece).clocks) / kClock;
           const double right = static_cast<double>(ticks + k) / static_cast<double>(all) * length;
-          // As a time, by the speed there.
+          // The error as a time, by the speed at this place.
           const double here = form.at(seconds);
           const double speed = (form.at(seconds + 1e-6) - form.at(seconds - 1e-6)) / 2e-6;
           worst = std::max(worst, std::abs(here - right) / speed);
@@ -135,7 +135,7 @@ TEST(SCurvePieces, LoneMovesAreWhereTheClosedFormIs) {
         clocks += make(piece).clocks;
         ticks += of_piece;
       }
-      // The last tick takes 1 / floor, on the way to rest 3 / floor.
+      // The last tick takes 1 / floor; in the closed form it would take 3 / floor.
       const double floor = std::cbrt(4.5 * m.jerk * static_cast<double>(all) / length);
       EXPECT_LT(worst, 1.25e-4 * form.seconds()) << length;
       EXPECT_NEAR(clocks / kClock, form.seconds() - 2 / floor, 2e-5) << length;
@@ -143,8 +143,8 @@ TEST(SCurvePieces, LoneMovesAreWhereTheClosedFormIs) {
   }
 }
 
-// The planned time is the closed form's less 2 / (4.5 j D)^(1/3), D ticks a mm: at rest a tick would take 3 / floor,
-// and the last one takes 1 / floor. The first one takes its whole time.
+// The planned time is that of the closed form less 2 / (4.5 j D)^(1/3), with D ticks per mm: before rest a tick would
+// take 3 / floor, but the last tick takes 1 / floor. The first tick takes its whole time.
 TEST(SCurvePieces, LoneMovesTakeTheClosedFormLessTwoThirdsOfTheLastTick) {
   double worst = 0;
   double largest_term = 0;
@@ -202,7 +202,7 @@ TEST(SCurvePieces, AreMadeWhereEveryAxisHasAJerk) {
   EXPECT_EQ(pieces_of("G1 X100 F6000", machine).size(), 3U);
 }
 
-// The stream refuses pieces that would reverse: of the planner's there are none, at fast and slow clocks, with short
+// The stream refuses pieces that would reverse the feed. The planner makes none, at fast and slow clocks, with short
 // moves among long ones.
 TEST(SCurvePieces, NoneReversesTheFeed) {
   std::mt19937 random(5);

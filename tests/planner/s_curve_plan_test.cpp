@@ -165,7 +165,7 @@ TEST(SCurvePlan, LongerWindowsAreNotSlower) {
   EXPECT_LT(before, whole * 1.001);
 }
 
-// A window that is some stopping distances long takes the time of the whole path, and stops nowhere.
+// A plan with a window of several stopping distances takes the time of a plan over the whole path, and never stops.
 TEST(SCurvePlan, AWindowOfSomeStoppingDistancesIsEnough) {
   Spans spans;
   for (int i = 0; i < 20'000; ++i) {
@@ -178,7 +178,7 @@ TEST(SCurvePlan, AWindowOfSomeStoppingDistancesIsEnough) {
   EXPECT_EQ(std::count_if(phases.begin(), phases.end(), [](const Phase& phase) { return phase.short_sight; }), 0);
 }
 
-// A host that is told to stop throws there: a window may have thousands of ramps.
+// A host that must stop throws in this call. A window may have thousands of ramps, so one call per window is too few.
 TEST(SCurvePlan, CallsBeforeEachRamp) {
   Random random(7);
   const Spans spans = moves(random, {100, 1'000, 1e5}, true);
@@ -239,7 +239,7 @@ TEST(SCurvePlan, AStopInMidPathIsNotOneThatFinishAskedFor) {
   EXPECT_TRUE(phases.back().stop);
 }
 
-// Stops in mid path, or all but.
+// Number of phases in mid path that begin at rest or nearly at rest.
 std::size_t stops_of(const std::vector<Phase>& phases) {
   constexpr double kRest = 1e-3;  // mm/s
   std::size_t stops = 0;
@@ -247,8 +247,8 @@ std::size_t stops_of(const std::vector<Phase>& phases) {
   return stops;
 }
 
-// Where a trapezoid with that window does not stop either. Of spans whose lengths differ by four decades a window of
-// 16 may show too little for that.
+// The plan stops only where a trapezoid plan with the same window stops. If lengths of spans differ by four decades, a
+// window of 16 may be too short for this rule.
 TEST(SCurvePlan, AShortWindowOnlySlows) {
   Random random(12);
   std::size_t slowed = 0;

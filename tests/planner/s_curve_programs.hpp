@@ -35,7 +35,7 @@ inline Limits random_limits(Random& random) {
   return {random.logarithmic(5, 500), random.logarithmic(100, 10'000), random.logarithmic(1'000, 1e6)};
 }
 
-// Lengths over four decades, corners of any speed, stops; speeds that differ when told.
+// Lengths over four decades, corners of any speed, and stops; different speeds if `speeds` is set.
 inline Spans moves(Random& random, const Limits& limits, bool speeds) {
   Spans spans;
   const std::size_t count = 1 + random.below(60);
@@ -57,7 +57,8 @@ inline Spans with_limits(Random& random, Spans spans, double factor) {
   return spans;
 }
 
-// Chords of a curve, corners by their centripetal limit; `noise` of the angles, as rounded ends have it.
+// Chords of a curve, with corner speeds by the centripetal limit. `noise`: relative error of the angles, as rounded
+// ends cause it.
 inline Spans chords(Random& random, const Limits& limits, const std::function<double(double)>& curvature,
                     double noise) {
   Spans spans;
@@ -87,7 +88,7 @@ inline Spans random_chords(Random& random, const Limits& limits) {
   }
 }
 
-// One acceleration and jerk for all spans of a program.
+// A program with one acceleration and jerk for all its spans.
 inline Spans random_program(Random& random) {
   const Limits limits = random_limits(random);
   switch (random.below(3)) {

@@ -1,4 +1,4 @@
-// Blocks shorter than a pulse between others: they neither stop the machine nor cost time.
+// Blocks shorter than a pulse, between others: they must neither stop the machine nor cost time.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBackwards = -0.999;  // cosine of the angle between two motions: the second one goes back
 
-// Moves of mm and of 0.004 mm, in XY and of Z alone.
+// Moves of some millimetres and of 0.004 mm, in X and Y or in Z alone.
 std::string mixed_program(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto tiny = [&] { return 0.004 * (static_cast<double>(random() % 5) - 2) / 2; };
@@ -33,7 +33,7 @@ std::string mixed_program(std::uint64_t seed) {
   return text;
 }
 
-// A raster over heights: blocks of 0.004 mm along X, with Z where the height changes slowly, walls as moves of Z alone,
+// A raster over heights: blocks of 0.004 mm along X, with Z where the height changes slowly; walls as moves of Z alone;
 // a step of 0.004 mm in Y at the end of each row.
 std::string relief(std::uint64_t seed) {
   constexpr double kStep = 0.004;
@@ -86,8 +86,8 @@ unsigned needless_stops(const Plan& plan) {
   return stops;
 }
 
-// The machine with few steps drops the blocks without a pulse. Where a motion goes back after them it stops, and there
-// alone; the one with many steps creeps round the same place and is no quicker.
+// The machine with few steps/mm drops the blocks without a pulse. It stops only where the motion after them goes back.
+// The machine with many steps/mm moves slowly around the same place and is not faster.
 TEST(ShortBlocks, StopOnlyWhereTheWayGoesBack) {
   unsigned stops = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -102,9 +102,9 @@ TEST(ShortBlocks, StopOnlyWhereTheWayGoesBack) {
   EXPECT_GT(stops, 130U);
 }
 
-// From a wall up, by a block without a pulse, to the next one down: two corners, and no reversal. Where each block has
-// pulses, steps/mm change nothing. With fewer of them blocks are put together, so that their corners lie farther apart
-// and may be passed faster.
+// A wall up, a block without a pulse and a wall down make two corners and not a reversal. If each block has pulses,
+// steps/mm do not change the time. With fewer steps/mm, blocks are joined, so that their corners are farther apart and
+// may be passed faster.
 TEST(ShortBlocks, AReliefStopsAtItsEndAloneWhateverThePulse) {
   double least = 1;
   double worst = 0;
@@ -131,7 +131,7 @@ TEST(ShortBlocks, AReliefStopsAtItsEndAloneWhateverThePulse) {
   RecordProperty("worst_at_2000", fmt::format("{:.6f}", worst));
 }
 
-// A dwell, an exact stop and a reversal on the way round stop the motion as they do with more pulses.
+// A dwell, an exact stop or a reversal between the two moves stops the motion, as it does with more pulses.
 TEST(ShortBlocks, WaysRoundDoNotPassWhatStops) {
   const auto stops = [](const std::string& between, double steps_per_mm) {
     const Plan plan = plan_at("G64 G1 F1000 Z1\n" + between + "Z0\nM2\n", steps_per_mm);

@@ -1,4 +1,4 @@
-// Spans a second of the speed plan alone, with the window full.
+// Spans per second of the speed plan alone, with a full window.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using trammel::planner::Span;
 
 enum Path { kLine, kCircle, kCurve };
 
-// Chords of 0.02 mm. The limits of a curve turn with its direction, its corners are those of rounded ends.
+// Chords of 0.02 mm. On a curve the limits change with its direction, and the corners are those of rounded ends.
 std::vector<Span> chords(int path) {
   std::vector<Span> spans;
   unsigned noise = 1;

@@ -8,11 +8,11 @@
 namespace trammel::test {
 namespace {
 
-constexpr double kPart = 1e-9;    // of a limit
-constexpr double kSpeed = 1e-5;   // mm/s: 1e-12 mm from a stop the speed is as much
+constexpr double kPart = 1e-9;    // relative tolerance of a limit
+constexpr double kSpeed = 1e-5;   // mm/s; the speed at 1e-12 mm from a stop
 constexpr double kLength = 1e-8;  // mm
-constexpr double kTouch = 1e-9;   // mm: less of a phase in a span is rounding
-constexpr int kLooks = 16;        // at a phase in a span
+constexpr double kTouch = 1e-9;   // mm; a smaller part of a phase in a span is rounding
+constexpr int kLooks = 16;        // samples per phase in a span
 
 double length_at(const Phase& phase, double time) {
   return ((phase.jerk / 6 * time + phase.acceleration / 2) * time + phase.speed) * time;
@@ -22,7 +22,7 @@ double speed_at(const Phase& phase, double time) {
 }
 double acceleration_at(const Phase& phase, double time) { return phase.jerk * time + phase.acceleration; }
 
-// When `length` of the phase is done, by halving.
+// Time at which `length` of the phase is done, by bisection.
 double time_at(const Phase& phase, double length) {
   double low = 0;
   double high = phase.duration;
@@ -107,7 +107,8 @@ class Judge {
            expect(least >= -kSpeed, "speed", least, 0) && within_jerk(phase, begin, end);
   }
 
-  // On an arc along the path and across it, as the speed and the acceleration of the moment are.
+  // On an arc the limit applies to the jerk along the path and across it, by the speed and the acceleration at each
+  // sample.
   bool within_jerk(const Phase& phase, double begin, double end) {
     const Span& span = spans_[span_];
     const planner::Curve& curve = span.curve;
@@ -125,7 +126,7 @@ class Judge {
     return true;
   }
 
-  // On an arc the speed of the moment decides.
+  // On an arc the limit depends on the speed at each sample.
   bool within_acceleration(const Phase& phase, double begin, double end) {
     const Span& span = spans_[span_];
     for (int i = 0; i <= kLooks; ++i) {
@@ -146,7 +147,7 @@ class Judge {
   const std::vector<Span>& spans_;
   bool jumps_;
   std::size_t span_ = 0;
-  double left_ = 0;  // of the span
+  double left_ = 0;  // remaining length of the span, mm
   double speed_ = 0;
   double acceleration_ = 0;
   std::string fault_;
@@ -180,7 +181,7 @@ std::string fault_of(const std::vector<Phase>& phases, const std::vector<Span>& 
 }
 
 Trapezoid trapezoid_of(const std::vector<Span>& spans) {
-  std::vector<double> squared(spans.size() + 1, 0.0);  // of the speed at each border
+  std::vector<double> squared(spans.size() + 1, 0.0);  // square of the speed at each border
   for (std::size_t i = spans.size() - 1; i > 0; --i) {
     const double corner = std::min({spans[i - 1].exit_speed, spans[i - 1].speed, spans[i].speed});
     squared[i] = std::min(corner * corner, squared[i + 1] + 2 * spans[i].acceleration * spans[i].length);

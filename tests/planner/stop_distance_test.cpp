@@ -1,4 +1,4 @@
-// Stop distances against what full queues hold, counted from the commands alone.
+// Stop distances against the contents of full queues, counted from the commands alone.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ std::uint32_t halfwords_of(const driver::Command& command) {
 }
 
 struct Path {
-  std::uint64_t begin = 0;  // tick
+  std::uint64_t begin = 0;  // first tick
   std::uint64_t ticks = 0;
   std::uint32_t halfwords = 0;
 };
@@ -30,8 +30,8 @@ struct Piece {
   std::uint32_t stop_distance = 0;
 };
 
-// The most by which a stop distance is above a quarter of the ticks in a full geometry queue behind its piece's begin;
-// of those behind which there is so much.
+// Largest ratio of a stop distance (plus 256 ticks) to a quarter of the ticks in a full geometry queue from the
+// beginning of its piece. Only pieces that a full queue follows are counted.
 double worst_share(const std::string& program, const machine::Machine& machine, const CardLimits& card) {
   std::vector<Path> paths;
   std::vector<Piece> pieces;
@@ -92,7 +92,7 @@ TEST(StopDistance, OfArcsInChordsCountsTheirChords) {
   EXPECT_LE(worst_share(circles("G1 X0.01\n"), machine, with_arcs_by(card, ArcsBy::kChords)), 1.02);
 }
 
-// An arc for the generator takes more than two lines.
+// A command for the arc generator is longer than two lines.
 TEST(StopDistance, OfShortArcsCountsTheirSize) {
   CardLimits card;
   card.clock_hz = 50'000'000;
@@ -108,7 +108,7 @@ TEST(StopDistance, OfShortArcsCountsTheirSize) {
   EXPECT_LE(worst_share(program + "M2\n", machine, card), 1.02);
 }
 
-// Of pieces that begin in the last path before a stop: all up to it is queued.
+// For pieces that begin in the last path before a stop, everything up to the stop is queued.
 TEST(StopDistance, IsNoneWhereAllUpToTheStopIsQueued) {
   CardLimits card;
   card.clock_hz = 50'000'000;
@@ -131,12 +131,12 @@ TEST(StopDistance, IsNoneWhereAllUpToTheStopIsQueued) {
   EXPECT_GE(others, 2U);
 }
 
-// 10 mm at 1 mm/s, then 1 mm at what can be had up to the stop: from the slow line's last piece on a stop takes 0.1 mm
-// of it and all of the quick one at most, whatever the rates there are.
+// 10 mm at 1 mm/s, then 1 mm at the highest speed possible before the stop. From the last piece of the slow line, a
+// stop takes at most 0.1 mm of this line and the whole fast line, for any rates.
 TEST(StopDistance, IsAtMostTheWayToTheStop) {
   CardLimits card;
   card.clock_hz = 50'000'000;
-  // Behind what the host fills the queues with at first.
+  // These lines come first because the host fills the queues at the start.
   std::string program = "G61.1 F600\n";
   for (int i = 0; i < 300; ++i) program += "G1 Y0.1\nY0\n";
   const Plan plan = plan_text(program + "G64 F60\nG1 X10\nF6000 G1 X11\nM2\n", quick_machine(), card);

@@ -1,8 +1,8 @@
-// The least time of a zigzag, by closed forms, and how far the S-curve planner is from it.
+// The least time of a zigzag, by closed forms, and the excess time of the S-curve planner.
 //
-// Each corner has a highest speed. Speed falls towards it and rises behind it, so that it is least there and the
-// acceleration along the path is 0: no motion within the same limits is quicker than, in each segment, the quickest
-// rise from the corner's speed and the quickest fall back to it.
+// Each corner has a highest speed. The speed falls towards the corner and rises after it, so it is least at the corner
+// and the acceleration along the path is 0 there. Therefore, in each segment, the fastest motion within the same limits
+// is the fastest rise from the corner's speed and the fastest fall back to it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace trammel::planner {
 namespace {
 
-// Along the path, in mm and seconds.
+// Limits along the path, in mm and seconds.
 struct PathLimits {
   double speed, acceleration, jerk;
 
@@ -26,7 +26,7 @@ struct PathLimits {
   }
   double change_length(double from, double to) const { return (from + to) / 2 * change_time(from, to); }
 
-  // From one speed to a peak and on to the other.
+  // Least time from one speed to a peak and then to the other speed.
   double least_time(double length, double from, double to) const {
     double low = std::max(from, to);
     double high = speed;
@@ -41,7 +41,7 @@ struct PathLimits {
 };
 
 constexpr unsigned kSegments = 40;
-constexpr double kLastTick = 0.0025;  // s: at rest it does not take its three times as long
+constexpr double kLastTick = 0.0025;  // s; saved by the last tick, which takes 1/3 of its time in the closed form
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
 std::string zigzag(double degrees, double length) {
@@ -52,14 +52,14 @@ std::string zigzag(double degrees, double length) {
   return text;
 }
 
-// Of the axis that limits most.
+// Limits along the path, by the axis that limits most.
 PathLimits limits_along(const machine::Machine& machine, double degrees) {
   const double most = std::max(std::sin(degrees / 2 * kDegree), std::cos(degrees / 2 * kDegree));
   const machine::MachineAxis& axis = machine.axes[0];
   return {9000.0 / 60, axis.max_acceleration / most, axis.max_jerk / most};
 }
 
-// X turns back in each corner.
+// Speed in a corner, from the jump of the velocity: X reverses there.
 double corner_speed(const Plan& plan, double degrees) {
   return plan.blocks[kSegments / 2].planned.velocity_jump / (2 * std::cos(degrees / 2 * kDegree));
 }
@@ -79,7 +79,7 @@ TEST(Zigzag, TakesHardlyMoreThanTheLeastTime) {
         ASSERT_FALSE(plan.error);
         const double corner = corner_speed(plan, degrees);
         const PathLimits limits = limits_along(machine, degrees);
-        // Otherwise the first corners are passed at lower speeds.
+        // In longer ramps the first corners would be passed at lower speeds.
         if (limits.change_length(0, corner) > length) continue;
         ++judged;
         const double least = limits.least_time(length, 0, corner) + limits.least_time(length, corner, 0) +

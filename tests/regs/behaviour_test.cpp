@@ -1,5 +1,5 @@
-// What the register file does beyond keeping values: latencies, setting bus, events, stream and its owner, START,
-// interrupt, skipping. Snapshots: snapshot_test.cpp.
+// Behaviour of the register file beyond keeping values: latencies, setting bus, events, the stream and its owner,
+// START, interrupt, skipping. Snapshots: snapshot_test.cpp.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -171,7 +171,7 @@ TEST(Behaviour, ARefusalByFlushBelongsToThePortThatAskedForIt) {
   RegisterBench bench(4);
   bench.in.port = 2;
   bench.write(reg::kControl, field::kControlFlush);
-  // The checker answers the flush in the clock of the write's answer; the next access comes a clock later.
+  // The checker answers the flush in the clock in which the write is answered; the next access comes one clock later.
   RegisterFile file = bench.file();
   RegisterFile::Inputs in = bench.in;
   in.checker_refuse = true;
@@ -238,7 +238,7 @@ TEST(Behaviour, EventsLastTheClockOfTheAnswer) {
   EXPECT_FALSE(bench.outputs().abort);
 }
 
-// In which clocks after the request flush and abort are high, for each combination of the two.
+// The clocks after the request in which flush and abort are high, for each combination of the two.
 TEST(Behaviour, AFlushComesAClockBeforeTheAnswerAndNeverWithAnAbort) {
   for (const std::uint32_t orders : {0u, 2u, 4u, 6u}) {
     RegisterBench bench(4);

@@ -1,5 +1,5 @@
-// Accesses to the golden register file with a card at rest around it: a command checker that takes every word in six
-// clocks (or refuses it, when told) and a direct loader that accepts every start.
+// Accesses to the golden register file with a card at rest around it: a command checker that accepts every word in six
+// clocks (or refuses it when told), and a direct loader that accepts every start.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ class RegisterBench {
   Answer read(std::uint32_t address) { return access(false, address, 0, false); }
   Answer write(std::uint32_t address, std::uint32_t data) { return access(true, address, data, false); }
 
-  // The reason of the refusal, None when the access was taken; REFUSAL is cleared afterwards.
+  // Reason of the refusal, None when the access was accepted. REFUSAL is cleared afterwards.
   card_map::Reason refusal_of_read(std::uint32_t address) { return refusal_of(read(address), address); }
   card_map::Reason refusal_of_write(std::uint32_t address, std::uint32_t data) {
     return refusal_of(write(address, data), address);
@@ -63,8 +63,8 @@ class RegisterBench {
   std::uint64_t latency() const { return latency_; }
 
   model::RegisterFile::Inputs in;
-  std::uint32_t settings = 0;  // how often the setting bus was set
-  bool refuse_word = false;    // by the checker, with in.checker_reason and in.checker_number
+  std::uint32_t settings = 0;  // number of times that the setting bus was set
+  bool refuse_word = false;    // the checker refuses the next word, with in.checker_reason and in.checker_number
 
  private:
   Answer access(bool write, std::uint32_t address, std::uint32_t data, bool partial) {
@@ -88,7 +88,7 @@ class RegisterBench {
     const std::uint32_t refusal = read(card_map::reg::kRefusal).data;
     write(card_map::reg::kRefusal, card_map::field::kRefusalReason);
     const std::uint32_t at = (refusal & card_map::field::kRefusalAddress) >> card_map::field::kRefusalAddressShift;
-    // A refusal that names another access is none of this one's.
+    // A refusal that names another access does not belong to this one.
     if (at != address || answer.data != 0) return static_cast<card_map::Reason>(0xFF);
     return static_cast<card_map::Reason>(refusal & card_map::field::kRefusalReason);
   }

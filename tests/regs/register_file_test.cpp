@@ -1,5 +1,5 @@
-// The register table of the card map, walked over the golden register file: reset values, kinds of access, every
-// bit, no aliases, refusals that change nothing. Expectations come from the table and from architecture.md.
+// Walks the register table of the card map over the golden register file: reset values, kinds of access, every bit, no
+// aliases, refusals that change nothing. Expectations come from the table and from architecture.md.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -36,13 +36,13 @@ std::vector<Place> places(std::uint32_t axes) {
 
 bool readable(const card_map::Register& entry) { return entry.access != Access::Command; }
 
-// A value that the register takes and that differs from both its reset value and 0 where it can.
+// A value that the register accepts; it differs from the reset value and from 0 if possible.
 std::uint32_t other_value(const card_map::Register& entry) {
   if (entry.limited == entry.mask) return entry.maximum == entry.reset ? entry.maximum - 1 : entry.maximum;
   return entry.mask & ~entry.limited;
 }
 
-// Everything that reads back, by address; the live registers of the test do not move by themselves.
+// All readable registers, by address; the live registers do not change in this test.
 std::vector<std::uint32_t> image(RegisterBench& bench) {
   std::vector<std::uint32_t> values;
   for (const Place& place : places(bench.axes())) {
@@ -89,14 +89,14 @@ TEST(Identity, ComesFromTheParameters) {
   EXPECT_EQ(bench.read(reg::kBuildFlags).data, 1u);
   EXPECT_EQ(bench.read(reg::kBoardId).data, 0xB0A2Du);
   EXPECT_EQ(bench.read(reg::kPorts).data, 3u);
-  // The strap: first pins 010, second pins 101.
+  // The strap: 010 for the first pins, 101 for the second pins.
   EXPECT_EQ(bench.read(reg::mode(0)).data, field::kModeInvertSecond);
   EXPECT_EQ(bench.read(reg::mode(1)).data, field::kModeInvertFirst);
   EXPECT_EQ(bench.read(reg::mode(2)).data, field::kModeInvertSecond);
 }
 
-// The words by hand, from the layout on the reference page: {features, instances, version, tag} and
-// {load unit, stride, words, base}.
+// The words computed by hand from the layout on the reference page: {features, instances, version, tag} and {load unit,
+// stride, words, base}.
 TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
   RegisterFile::Config config = RegisterBench::config_of(3);
   config.engines = RegisterFile::kMinEngines | card_map::engines::kDirectMode | card_map::engines::kClasses;
@@ -121,7 +121,7 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
       0x00'02'10'07,
       word(31, 0, 0, 0),  // two host ports
       0x00'01'10'0A,
-      word(31, 0, 15, 0xCD0),  // direct mode: 4 words an axis, two of length, START
+      word(31, 0, 15, 0xCD0),  // direct mode: 4 words per axis, two for the length, START
       0x00'01'11'10,
       word(31, 0, 1, 0x780),  // watchdog
       0x00'01'10'15,
@@ -132,7 +132,7 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
     EXPECT_EQ(bench.read(reg::descriptor(i)).data, expected[i]) << "word " << i;
 }
 
-// A card with all engines: every unit once, in the order of the description, no two ranges overlap.
+// A card with all engines: every unit once, in the order of the description, and no overlapping ranges.
 TEST(Descriptors, EveryUnitOnceAndNoOverlap) {
   RegisterFile::Config config = RegisterBench::config_of(8);
   config.engines = RegisterFile::kMaxEngines;
@@ -153,7 +153,7 @@ TEST(Descriptors, EveryUnitOnceAndNoOverlap) {
   EXPECT_EQ(bench.read(reg::descriptor(2 * card_map::kUnits.size())).data, 0u);
 }
 
-// Which registers an engine brings, by hand.
+// The registers of an engine, listed by hand.
 TEST(Identity, WithoutDirectModeItsRegistersAreUnknown) {
   RegisterFile::Config config = RegisterBench::config_of(2);
   config.engines = RegisterFile::kDefaultEngines & ~card_map::engines::kDirectMode;
@@ -260,7 +260,7 @@ TEST(Refusals, BitsWithoutMeaningAndLimits) {
   }
 }
 
-// It can be written alone, and what is written goes to whoever has it.
+// SET_PLACE can only be written; its value goes out on the setting bus.
 TEST(SetPlace, IsAnActionThatNothingIsReadBackOf) {
   RegisterBench bench(4);
   bench.settings = 0;

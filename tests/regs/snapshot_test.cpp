@@ -1,4 +1,4 @@
-// Snapshots: all of one clock, in the area of who asked, and in which order they come.
+// Snapshots: all values are of one clock, in the area of the requester, in the right order.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -18,7 +18,7 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 using card_map::Area;
 
-// Everything counts up with the time, so whatever clock a value is taken in, it tells.
+// All inputs count up with the time, so that each value shows the clock in which it was taken.
 void count(RegisterFile::Inputs& in, std::uint64_t time) {
   const auto t = static_cast<std::uint32_t>(time);
   in.rate = 100 + t;
@@ -34,7 +34,7 @@ struct Taken {
   bool coherent;
 };
 
-// Reads an area of a bench whose inputs stand still meanwhile.
+// Reads an area while the inputs of the bench are constant.
 Taken area(RegisterBench& bench, Area where) {
   const std::uint32_t t = bench.read(reg::time_lo(where)).data;
   RegisterFile::Inputs then;
@@ -65,7 +65,7 @@ class Snapshot : public ::testing::TestWithParam<std::uint32_t> {
   std::uint64_t now() const { return bench_.file().time(); }
   bool busy() const { return (bench_.file().status(bench_.in) & field::kStatusSnapshot) != 0; }
 
-  // Asks by CONTROL; the clock of the answer is the request's.
+  // Requests a snapshot by CONTROL; the clock of the answer is the clock of the request.
   std::uint64_t ask_by_control() {
     bench_.in.request = true;
     bench_.in.write = true;
@@ -111,14 +111,15 @@ TEST_P(Snapshot, IsOfTheClockAfterItsRequest) {
 
 TEST_P(Snapshot, AccessesWaitForItsWordsButLiveRegistersDoNot) {
   ask_by_stop();
-  const std::uint64_t asked = now();  // the strobe's clock
+  const std::uint64_t asked = now();  // clock of the strobe
   bench_.read(reg::kStatus);
   EXPECT_EQ(bench_.latency(), 5u);
   bench_.read(reg::kMagic);
   EXPECT_EQ(bench_.file().time(), asked + GetParam() + 11 + 3);
 }
 
-// The stop's request in each clock around the host's: never mixed, the stop's of its own clock, the host's after it.
+// The request of a stop in each clock around the host's: the snapshots are never mixed. That of the stop is of its own
+// clock, that of the host follows.
 TEST_P(Snapshot, TheStopGoesFirstAndTheHostsIsTakenAnew) {
   const std::uint64_t busy_clocks = GetParam() + 11;
   for (std::uint64_t after = 0; after <= busy_clocks + 1; ++after) {

@@ -11,8 +11,8 @@
 namespace trammel::report {
 namespace {
 
-// Clock of each path's last tick, and the largest rate, as the second reader of tests/motion has them: it adds up the
-// feed generator's integers update by update.
+// Clock of each path's last tick, computed by the second reader of tests/motion, which adds up the feed generator's
+// integers update by update.
 struct Walked {
   std::vector<std::uint64_t> ends;  // by command
   void start() {}
@@ -66,7 +66,7 @@ Read read(const std::vector<driver::Command>& commands) {
   return result;
 }
 
-// The clock at which each path ends must be the walker's; a clock either way is what sums in doubles may cost.
+// Both must give the same clock for each path's end. Sums in doubles may be off by one clock in either direction.
 void expect_same(const Program& program) {
   test::MotionWalk walk(program.commands);
   Walked walked;
@@ -97,9 +97,9 @@ TEST(MotionClock, OneRateIsALineInTime) {
   EXPECT_EQ(found.ends[1], 8000U);
 }
 
-// From rest with a: v = a t, and the host sends r = a/2 an update for the first one's middle.
+// The speed is v = begin + a t. The host sends the rate for the middle of the first update, begin + 16 a.
 TEST(MotionClock, ARampHasItsAccelerationAndBeginsAtItsSpeed) {
-  constexpr double kAcceleration = 1e-7;  // ticks a clock^2
+  constexpr double kAcceleration = 1e-7;  // ticks per clock^2
   constexpr double kBegin = 0.01;
   Program program;
   program.piece(5000, kBegin + kAcceleration * 16, kAcceleration * 32, 0, 0x1p-20);
@@ -116,7 +116,7 @@ TEST(MotionClock, ARampHasItsAccelerationAndBeginsAtItsSpeed) {
   EXPECT_NEAR(found.segments[1].rate, kBegin + kAcceleration * t, 2 * kAcceleration);
 }
 
-// Acceleration is added first at the 32nd clock.
+// The acceleration is first added at the 32nd clock.
 TEST(MotionClock, APieceWithoutAnUpdateHasOneRate) {
   Program program;
   program.piece(10, 0.5, 1e-3, 0, 0x1p-20);
@@ -141,7 +141,7 @@ TEST(MotionClock, AgreesWithTheSecondReaderOnRandomMotions) {
         const auto some = static_cast<std::uint64_t>(40 + share() * 20000);
         const double rate = 0.002 + share() * 0.8;
         const double updates = static_cast<double>(some) / rate / 32;
-        // Up or down by at most half of the rate over the piece, bent or not; some fall to their floors.
+        // The rate changes by at most half over the piece, with or without jerk. Some pieces fall to their floors.
         const double even = (share() - 0.5) * rate / updates;
         const bool falls = even < 0 && share() < 0.2;
         const double acceleration = falls ? 4 * even : even;

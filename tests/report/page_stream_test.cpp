@@ -12,7 +12,7 @@
 namespace trammel::report {
 namespace {
 
-// From RFC 4648.
+// Test vectors of RFC 4648.
 TEST(Base64, IsThatOfTheStandard) {
   const auto text = [](const std::string& bytes) {
     return base64(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());

@@ -55,14 +55,14 @@ TEST(TurnClocks, AreTheShapersWhateverItsTimes) {
   EXPECT_GT(turns, 200);
 }
 
-// Straight lines stay two points; a bend is kept, within the tolerance.
+// A straight line is kept as two points, and a bend is kept within the tolerance.
 TEST(TimeMap, KeepsFewPointsAndStaysNearAllOthers) {
   std::vector<TimeMap::Point> given;
   std::vector<TimeMap::Point> kept;
   TimeMap map;
   const auto keep = [&](const TimeMap::Point& point) { kept.push_back(point); };
   const auto motion_at = [](std::uint64_t cycle) {
-    // At full speed, then a ramp down over 100,000 clocks, then a tenth.
+    // Full speed, then a ramp down over 100,000 clocks, then a tenth of full speed.
     if (cycle < 500'000) return static_cast<double>(cycle);
     const double t = std::min(100'000.0, static_cast<double>(cycle) - 500'000);
     const double rest = std::max(0.0, static_cast<double>(cycle) - 600'000);

@@ -1,4 +1,4 @@
-// The bytes of a page's stream again, and their numbers.
+// Decodes a stream of a page: its bytes and its numbers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ inline std::string inflated(const std::string& bytes, std::size_t size) {
   return out;
 }
 
-// Of a stream of varints alone.
+// Numbers of a stream that contains only varints.
 inline std::vector<std::uint64_t> varints(const std::string& page, const std::string& name) {
   std::vector<std::uint64_t> numbers;
   std::uint64_t value = 0;

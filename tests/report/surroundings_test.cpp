@@ -45,7 +45,7 @@ TEST(Surroundings, EachChangeOfAnInputComesBackAtItsClock) {
             (std::vector<std::uint64_t>{250, 1, 1, 2, 89'749, std::uint64_t{1} << Surroundings::kEmergencyStop}));
 }
 
-// A motor that follows within a quarter of a full step is not worth a byte; the first block that is further off is.
+// Nothing is written while a motor follows within a quarter of a full step. The first block beyond that is written.
 TEST(Surroundings, ADifferenceIsKeptWhereItHasChangedEnough) {
   Text page;
   Surroundings out(page, kClockHz, {4, 4}, 0);
@@ -62,7 +62,7 @@ TEST(Surroundings, ADifferenceIsKeptWhereItHasChangedEnough) {
   EXPECT_NEAR(static_cast<double>(lost[0].cycle), 40.0 * kBlock, kBlock);
 }
 
-// The largest of each block, on either side; and at the end where it came to rest.
+// The largest difference of each block, of either sign, is written, and the last difference at rest.
 TEST(Surroundings, TheLargestDifferencesAndTheLastOneAreThere) {
   Text page;
   Surroundings out(page, kClockHz, {4}, 0);
@@ -86,7 +86,7 @@ TEST(Surroundings, TheLargestDifferencesAndTheLastOneAreThere) {
   EXPECT_EQ(list.back().pulses, 12);
 }
 
-// A machine that shakes for an hour: no more than kBlocks a second.
+// A machine that vibrates all the time: at most kBlocks differences per second are kept.
 TEST(Surroundings, ALongRunKeepsFewOfAllDifferences) {
   Text page;
   Surroundings out(page, kClockHz, {4}, 0);

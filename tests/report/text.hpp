@@ -1,4 +1,4 @@
-// A sink that keeps what is written.
+// A sink that stores the written text.
 #pragma once
 
 #include <string>

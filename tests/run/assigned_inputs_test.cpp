@@ -1,4 +1,4 @@
-// Switches tried by hand, on the model's card: pressed and released, never pressed, stuck.
+// Switches operated by hand, on the model's card: pressed and released, never pressed, stuck.
 #include "trammel/run/assigned_inputs.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// [outputs] of the machine file as the card gets it: safe levels, drives, the emergency stop.
+// [outputs] of the machine file in the card: safe levels, drives, the emergency stop.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace field = card_map::field;
 
 class CardOutputs : public ::testing::Test {
  protected:
-  // [outputs] as these overrides say.
+  // Configures the card with these overrides of [outputs]. Returns the register at `address`.
   std::uint32_t configured(std::uint32_t address, const std::vector<std::string>& entries) {
     machine::Machine machine = machine::default_machine();
     for (const std::string& entry : entries) machine::apply_override(machine, entry);

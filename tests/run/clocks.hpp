@@ -1,4 +1,4 @@
-// Those of the tests' cards.
+// Clock frequencies of the tests' cards, Hz.
 #pragma once
 
 #include <cstdint>

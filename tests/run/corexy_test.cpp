@@ -1,4 +1,5 @@
-// A machine with crossed belts, on the model's card: every coordinate is seen through the inverse, written here.
+// A machine with crossed belts (CoreXY) on the model's card. The test converts motor pulses to coordinates by its own
+// inverse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@
 namespace trammel::run {
 namespace {
 
-constexpr double kSteps = 80;  // a mm of belt
+constexpr double kSteps = 80;  // pulses per mm of belt
 constexpr std::uint32_t kClock = 1'000'000;
 
 struct Place {
@@ -43,7 +44,7 @@ class CoreXyRun : public ::testing::Test {
     engine_->set_sink(&steps_);
     card_.emplace(driver::Card::open(*engine_));
   }
-  // Every place that the path's steps make, after all of a tick.
+  // Positions after each tick of the path in which an axis stepped.
   std::vector<Place> places() const {
     std::vector<Place> result;
     double a = 0;
@@ -77,12 +78,13 @@ TEST_F(CoreXyRun, ALineStaysStraight) {
   run("G1 X10 Y4 F900\n");
   const double length = std::hypot(10, 4);
   for (const Place& at : places()) {
-    // sqrt(2) / 2 pulses on the joints are half a pulse of belt in the plane, whichever way.
+    // An error of sqrt(2) / 2 pulses in the joints is half a pulse of belt in the plane, in any direction.
     EXPECT_LE(std::abs(at.x * 4 - at.y * 10) / length, 0.51 / kSteps);
   }
 }
 
-// Every way of making an arc, both directions: no point off the circle by more than a pulse of belt, the end exact.
+// Each method of making an arc, in both directions: no point is off the circle by more than a pulse of belt, and the
+// end is exact.
 TEST_F(CoreXyRun, ArcsKeepTheirCircle) {
   for (const planner::ArcsBy by :
        {planner::ArcsBy::kGenerator, planner::ArcsBy::kAccumulator, planner::ArcsBy::kChords}) {
@@ -98,14 +100,14 @@ TEST_F(CoreXyRun, ArcsKeepTheirCircle) {
         EXPECT_NEAR(std::hypot(at.x - 5, at.y), 5, 1.1 / kSteps);
         lowest = std::min(lowest, at.y);
       }
-      // Clockwise from the left goes up at once, counter-clockwise first below.
+      // From the left end of the circle, G2 goes up first and G3 goes down first.
       EXPECT_EQ(lowest < -4, turn[1] == '3') << turn;
     }
   }
 }
 
 TEST_F(CoreXyRun, MotorLimitsBecomeLimitsAlongThePath) {
-  // Along the diagonal motor A makes sqrt(2) mm of belt a mm of path, B none.
+  // Along the diagonal, motor A moves sqrt(2) mm of belt per mm of path, and motor B does not move.
   machine::apply_override(machine_, "kinematics.motor_velocity=50");
   run("G1 X70.71067811865476 Y70.71067811865476 F9000\n");
   const double cruise = 100 / (50 / std::sqrt(2.0));

@@ -25,8 +25,8 @@ TEST(DeviationMeter, MeasuresALineAfterAllStepsOfATick) {
   meter.command(0, driver::FeedCommand{});
   meter.command(1, line(2, 2, 10));
   meter.step(1, 3, 0, 1);
-  meter.step(1, 3, 1, 1);  // the same tick: on the line
-  meter.step(1, 7, 0, 1);  // (2, 1): half a diagonal of a pulse off
+  meter.step(1, 3, 1, 1);  // in the same tick: on the line
+  meter.step(1, 7, 0, 1);  // at (2, 1): off by half the diagonal of a pulse
   meter.step(1, 8, 1, 1);
   meter.finish();
   EXPECT_NEAR(meter.largest_line(), std::sqrt(0.5), 1e-12);
@@ -59,7 +59,7 @@ TEST(DeviationMeter, MeasuresAnArcOutsideItsAnnulus) {
   EXPECT_NEAR(meter.largest_arc(), 100 - std::hypot(98, 1), 1e-9);
 }
 
-// The centre comes from the block, in machine coordinates, whatever its command says.
+// The centre comes from the block, in machine coordinates, and not from the command.
 TEST(DeviationMeter, MeasuresAnArcInChordsByItsBlock) {
   planner::Block block;
   block.start = {7, 5, 300, 0};
@@ -79,7 +79,7 @@ TEST(DeviationMeter, MeasuresAnArcInChordsByItsBlock) {
   meter.finish();
   EXPECT_NEAR(meter.largest_arc(), std::hypot(100, 1) - 100, 1e-9);
   meter.step(1, 1, 2, 1);
-  meter.step(1, 1, 2, 1);  // (-98, -1): the second part goes on where the first one ended
+  meter.step(1, 1, 2, 1);  // (-98, -1): the second part continues where the first one ended
   meter.finish();
   EXPECT_NEAR(meter.largest_arc(), 100 - std::hypot(98, 1), 1e-9);
 }

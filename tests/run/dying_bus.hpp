@@ -1,4 +1,4 @@
-// A card's bus that dies at a given time.
+// A card's bus that fails after a given clock.
 #pragma once
 
 #include <chrono>

@@ -33,7 +33,7 @@ TEST_F(HomingTest, OneAxisComesToItsFinalPosition) {
   bus_->add({0, 0, 1000});  // pressed at 12.5 mm and below
   const std::vector<HomedAxis> homed = home({0});
   ASSERT_EQ(homed.size(), 1U);
-  // The edge at pulse 1000 is at machine coordinate -1; the axis stands at 5, six mm from it.
+  // The edge at pulse 1000 is at machine coordinate -1. The axis ends at 5, which is 6 mm from the edge.
   EXPECT_NEAR(static_cast<double>(bus_->places()[0] - 1000), 6 * kPerMm, 1);
   EXPECT_NEAR(coordinate(0), 5, 0.013);
   EXPECT_NEAR(homed[0].search_edge, homed[0].edge, 1.01 / kPerMm);
@@ -42,7 +42,7 @@ TEST_F(HomingTest, OneAxisComesToItsFinalPosition) {
   EXPECT_EQ(bus_->places()[1], 1600) << "the others stand";
 }
 
-// A machine that has lost steps since it was homed is told by how much: here the switch has moved instead, by 8 pulses.
+// A second homing reports how many steps were lost since the first. This test moves the switch by 8 pulses instead.
 TEST_F(HomingTest, TheEdgeTellsOfStepsThatWereLost) {
   begin(homing_machine());
   bus_->add({0, 0, 1000});
@@ -58,7 +58,7 @@ TEST_F(HomingTest, TheEdgeTellsOfStepsThatWereLost) {
   EXPECT_NEAR(counted, -1 + 8.0 / kPerMm, 1.01 / kPerMm);
 }
 
-// Both motors turn for each axis: none is homed before both axes are.
+// Both motors turn for each axis, so no motor is homed before both axes are.
 TEST_F(HomingTest, CrossedBeltsHomeAxisByAxis) {
   const std::string corexy = "kinematics.name='corexy';homing.y.sequence=2";
   begin(homing_machine(corexy));
@@ -79,7 +79,7 @@ TEST_F(HomingTest, CrossedBeltsHomeAxisByAxis) {
   EXPECT_NEAR(coordinate(1), 0, 0.026);
 }
 
-// One path for both, in which both motors turn at speeds of their own.
+// Both axes home on one path, on which the motors have different speeds.
 TEST_F(HomingTest, CrossedBeltsHomeTogether) {
   begin(homing_machine("kinematics.name='corexy';homing.x.sequence=1"));
   bus_->add({0, 0, 1000});
@@ -179,13 +179,13 @@ TEST_F(HomingTest, AStuckSwitchIsNamed) {
 
 TEST_F(HomingTest, AStallIsLookedAtAtSpeed) {
   begin(homing_machine("homing.x={search_velocity=-40, latch_velocity=0, at_speed=true}"));
-  bus_->add({0, 0, 3995, 1, 1000});  // reports while it speeds up
+  bus_->add({0, 0, 3995, 1, 1000});  // reports during the acceleration
   bus_->add({0, 0, 1000});
   home({0});
   EXPECT_NEAR(static_cast<double>(bus_->places()[0] - 1000), 6 * kPerMm, 1);
 }
 
-// The same edge for any phase of the ramp, scale, speed, bounce and filter.
+// The edge is the same for any phase of the ramp, scale, speed, bounce and filter.
 TEST_F(HomingTest, TheEdgeIsTheSameWithinAPulse) {
   std::mt19937 random(7);
   const auto draw = [&random](double from, double to) {

@@ -1,5 +1,5 @@
-// Hosts that die, with the card's watchdog set: the card stops on the path and keeps a fault that says why. Hosts that
-// live never meet it.
+// The host dies while the card's watchdog is set: the card stops on the path and keeps a fault with the cause. A host
+// that lives never trips the watchdog.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -39,7 +39,7 @@ struct WatchedHost {
   DistantBus bus;
 };
 
-// Arcs and a line that is longer than the watchdog's time, the ramp of a stop and what the host sends ahead.
+// Arcs, and a line that takes longer than the watchdog's time, the ramp of a stop and the commands sent ahead.
 const std::string& watched_program() {
   static const std::string text = "F6000\nG1 X5 Y3\nG2 X15 Y3 I5\nG1 X195\nG3 X195 Y30 J13.5\nG1 X20\n";
   return text;
@@ -53,8 +53,8 @@ TEST(HostDeath, AHostThatLivesNeverMeetsTheWatchdog) {
   EXPECT_EQ(host.engine->read(card_map::reg::kUnderruns), 0U);
 }
 
-// Everything that the card does after the host's last word is the watchdog's: the same steps as a host that lives makes
-// the card take, up to a stop.
+// After the host's death the card acts by its watchdog alone: it makes the same steps as with a living host, up to a
+// stop.
 void expect_stop_on_path(const test::Steps& whole, std::uint64_t died) {
   WatchedHost host(died);
   ASSERT_THROW(host.run(watched_program()), RunError);

@@ -27,7 +27,7 @@ class JogTest : public testing::Test {
     configure(card_, machine_);
     engine_->set_sink(&steps_);
   }
-  // The jog is looked at every 20 ms.
+  // Lets time pass, and polls the jog every 20 ms.
   void pass(double seconds) {
     const std::uint64_t end = engine_->cycles() + static_cast<std::uint64_t>(seconds * kClock);
     while (engine_->cycles() < end) {
@@ -37,7 +37,7 @@ class JogTest : public testing::Test {
     }
   }
   double seconds() const { return static_cast<double>(engine_->cycles()) / kClock; }
-  // Mean speed of an axis over the last so many seconds, mm/s.
+  // Mean speed of an axis over the last `window` seconds, mm/s.
   double speed(unsigned axis, double window = 0.02) const {
     const std::uint64_t now = engine_->cycles();
     int pulses = 0;
@@ -46,7 +46,7 @@ class JogTest : public testing::Test {
     }
     return pulses / 80.0 / window;
   }
-  // The largest acceleration of an axis, over windows of 20 ms, mm/s^2.
+  // Largest acceleration of an axis between windows of 20 ms, mm/s^2.
   double largest_acceleration(unsigned axis) const {
     constexpr std::uint64_t kWindow = kClock / 50;
     std::vector<double> counts(engine_->cycles() / kWindow + 2);
@@ -55,7 +55,7 @@ class JogTest : public testing::Test {
     }
     double largest = 0;
     for (std::size_t i = 1; i < counts.size(); ++i) {
-      // Counts are off by a pulse each.
+      // Each count may be off by one pulse.
       largest = std::max(largest, std::abs(counts[i] - counts[i - 1]) - 2);
     }
     return largest / 80 * 50 * 50;
@@ -77,8 +77,8 @@ TEST_F(JogTest, SeveralAxesByADistance) {
   jog_.wait();
   EXPECT_TRUE(card_.in_position());
   const double took = static_cast<double>(steps_.pins.back().cycle - steps_.pins.front().cycle) / kClock;
-  // 5 mm at 20 mm/s with ramps of 1,250 mm/s^2 (Y's 1,000 along the way), less half a pulse of Y (1/320 of the way a
-  // pulse) from rest at either end.
+  // 5 mm at 20 mm/s with ramps of 1,250 mm/s^2 (1,000 for Y). The first and the last pulse of Y come half a pulse from
+  // rest, so the time of that distance is subtracted twice. Y makes 320 pulses.
   EXPECT_NEAR(took, 0.25 + 0.016 - 2 * std::sqrt(5.0 / 320 / 1250), 0.002);
   EXPECT_EQ(position_.pulses(), (planner::Pulses{240, -320}));
   EXPECT_LT(largest_acceleration(1), 1100);
@@ -88,7 +88,7 @@ TEST_F(JogTest, SeveralAxesByADistance) {
 }
 
 TEST_F(JogTest, StopsBeforeTheFirstSoftLimit) {
-  jog_.start({30, 10});  // x gets to 40 mm where y is at 13.3
+  jog_.start({30, 10});  // X reaches its limit of 40 mm when Y is at 13.3
   jog_.wait();
   EXPECT_EQ(position_.pulses()[0], 3200);
   EXPECT_NEAR(static_cast<double>(position_.pulses()[1]), 1066.7, 1);
@@ -110,7 +110,7 @@ TEST_F(JogTest, RunsUntilItIsStoppedAndRampsDown) {
   const std::size_t before = steps_.pins.size();
   jog_.stop();
   jog_.wait();
-  // 30 mm/s at half of 1000 mm/s^2: 60 ms, 0.9 mm.
+  // A stop from 30 mm/s at half of 1000 mm/s^2 takes 60 ms and 0.9 mm.
   EXPECT_NEAR(static_cast<double>(steps_.pins.size() - before), 0.9 * 80, 4);
   EXPECT_LT(largest_acceleration(0), 600);
   const std::int64_t stood = position_.pulses()[0];
@@ -138,7 +138,7 @@ TEST_F(JogTest, ItsSpeedIsChangedWithinLimits) {
   jog_.wait();
 }
 
-// Reaction: a look at the card 10 ms after the call, on a bus of 8 kB/s.
+// The ratio is read 10 ms after each call, on a bus of 8 kB/s.
 TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   machine::apply_override(machine_, "axis.x.max=1e4");
   const auto ratio_after = [&](double begun) {
@@ -161,7 +161,7 @@ TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   jog_.stop();
   EXPECT_LT(ratio_after(begun), ratio - 1000) << "slower";
   jog_.wait();
-  // The start: the stream is opened and three commands written, 40 words or so; with what a bus of 100 kB/s takes.
+  // A start opens the stream and writes three commands, about 40 words. It is measured on a bus of 100 kB/s.
   sim::TimedBus fast(*engine_, kClock, 100'000);
   driver::Card card = driver::Card::open(fast);
   MachinePosition position(card.read_snapshot(), machine_);
@@ -176,8 +176,8 @@ TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   jog.wait();
 }
 
-// A host that dies, by its bus, leaves a ramp to rest within what was sent ahead, far from the soft limit; whoever
-// comes next finds the position. With one axis and with three, in the middle of a jog and of a jog by a distance.
+// The host's bus fails. The card then ramps to rest within the commands that were sent ahead, far from the soft limit,
+// and the next program finds the position. Cases: one axis, three axes, and a jog by a distance.
 TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
   machine::apply_override(machine_, "axis.x.max=1e4");
   const double speed = 100;  // mm/s along the path
@@ -205,11 +205,11 @@ TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
     engine_->wait(std::uint64_t{5} * kClock);
     const std::vector<driver::PinStep>& steps = steps_.pins;
     ASSERT_GT(steps.size(), before);
-    // What was sent ahead: 2.2 stops of a full-speed jog at its ratio, and 0.1 s and some lines.
+    // Sent ahead: 2.2 stops of a full-speed jog at the jog's ratio, plus 0.1 s and some lines.
     const double stop = static_cast<double>(steps.back().cycle - dead) / kClock;
     EXPECT_GT(stop, 0.1);
     EXPECT_LT(stop, 1.0);
-    // A ramp: X gets slower and slower, its last pulses far apart.
+    // A ramp: X slows down continuously, and its last pulses are far apart.
     std::vector<std::uint64_t> x;
     for (std::size_t i = before; i < steps.size(); ++i) {
       if (steps[i].axis == 0) x.push_back(steps[i].cycle);
@@ -221,7 +221,7 @@ TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
     EXPECT_EQ(engine_->read(card_map::reg::kFault), 0U);
     EXPECT_EQ(engine_->read(card_map::reg::kUnderruns), under_runs + 1);
     EXPECT_NE(engine_->read(card_map::reg::kStatus) & card_map::field::kStatusUnderrun, 0U);
-    // Whoever comes next.
+    // The next program.
     const std::size_t stood = steps.size();
     driver::Card next = driver::Card::open(*engine_);
     next.stop();
@@ -234,7 +234,7 @@ TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
   }
 }
 
-// Nobody looks for a while: it stops, and goes on when somebody does.
+// Without polls the jog stops. It continues when it is polled again.
 TEST_F(JogTest, GoesOnWhenItIsLookedAtAgain) {
   machine::apply_override(machine_, "axis.x.max=1e4");
   jog_.start({30, 0});

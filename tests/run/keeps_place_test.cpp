@@ -1,4 +1,4 @@
-// Axes of the machine file that keep their place, as the card gets them.
+// The setting keeps_place of the machine file's axes, as the card receives it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A card that says that its map is 3.2.
+// A card that reports version 3.2 of the register map.
 class OldCard final : public driver::Bus {
  public:
   explicit OldCard(driver::Bus& behind) : behind_(behind) {}
@@ -45,7 +45,7 @@ TEST(KeepsPlace, IsSetForTheMotorsOfEachAxis) {
   const auto engine = sim::make_model_engine(sim::EngineOptions{6, 1'000'000, false});
   driver::Card card = driver::Card::open(*engine);
   machine::Machine machine = machine_with("yz");
-  machine::apply_override(machine, "axis.y.second_motor=true");  // X Y Z E Y
+  machine::apply_override(machine, "axis.y.second_motor=true");  // motors: X Y Z E Y
   configure(card, machine);
   EXPECT_EQ(card.read_keeps_place(), 0x16);
   card.set_keeps_place(0x36);

@@ -1,6 +1,6 @@
-// A laser whose power follows the speed burns evenly: the energy in each mm of a path with corners, holds and
-// overrides, counted at the output's pin of the simulated card, against the programmed one; and the same program at
-// constant power.
+// A laser whose power follows the speed must burn evenly. The test counts the energy in each mm of a path with corners,
+// holds and overrides at the output's pin of the simulated card, and compares it with the programmed energy. The same
+// program at constant power burns a mm with a hold at more than twice the energy.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,13 +24,13 @@ namespace {
 constexpr std::uint32_t kLaserClock = 100'000'000;
 constexpr double kLaserStepsPerMm = 400;  // of X and Y
 constexpr double kLaserFeed = 25;         // mm/s
-constexpr double kLaserPower = 0.6;       // of S at most
+constexpr double kLaserPower = 0.6;       // fraction of the maximum S
 constexpr unsigned kLaserOutput = 1;
 
-// How far along the path, in mm, a place of X and Y is. It is asked at each step, in order.
+// Distance along the path, in mm, of a position of X and Y. It is called for each step, in order.
 using PathLength = std::function<double(double x, double y)>;
 
-// Lines along X or Y alone: what the steps are long.
+// For lines along X or Y: the sum of the steps' lengths.
 PathLength along_axes() {
   return [x_before = 0.0, y_before = 0.0, length = 0.0](double x, double y) mutable {
     length += std::abs(x - x_before) + std::abs(y - y_before);
@@ -40,13 +40,13 @@ PathLength along_axes() {
   };
 }
 
-// A line from 0, 0: the place's foot on it.
+// For a line from (0, 0): the projection of the position on the line.
 PathLength along_line(double x_end, double y_end) {
   const double length = std::hypot(x_end, y_end);
   return [=](double x, double y) { return (x * x_end + y * y_end) / length; };
 }
 
-// Counterclockwise from 0, 0 around radius, 0; less than 4/3 turns.
+// For a counterclockwise circle from (0, 0) around (radius, 0), less than 4/3 turns.
 PathLength along_circle(double radius) {
   return [=, most = 0.0](double x, double y) mutable {
     double angle = std::atan2(-y, radius - x);
@@ -56,7 +56,8 @@ PathLength along_circle(double radius) {
   };
 }
 
-// Lit clocks in each mm of the path, from the first step at its begin or behind to the first at its end or behind.
+// Counts the clocks with the laser on in each mm of the path. A mm begins with the first step at or after its start,
+// and ends with the first step at or after its end.
 class EnergyMeter final : public driver::StepSink {
  public:
   explicit EnergyMeter(PathLength length) : length_(std::move(length)) {}
@@ -78,7 +79,7 @@ class EnergyMeter final : public driver::StepSink {
   const std::vector<double>& lit() const { return lit_; }
   std::uint64_t edges() const { return edges_; }
   bool on() const { return on_; }
-  // Lit clocks so far, in a mm or not.
+  // All clocks with the laser on so far, including those outside of the counted mm.
   double all() const { return all_; }
 
  private:
@@ -99,20 +100,20 @@ class EnergyMeter final : public driver::StepSink {
   bool on_ = false;
 };
 
-// What is cut, and how long its path is.
+// Program lines of a cut, and the function that measures along its path.
 struct Cut {
   std::string lines;
   std::function<PathLength()> length;
 };
 
-// Right angles, a reversal, and lines of less than a millimetre.
+// Right angles, a reversal, and lines shorter than 1 mm.
 Cut corners() {
   std::string lines = "G1 X12\nG1 Y8\nX4\nY3\nX10\nX6\nY5\n";
   for (int i = 0; i < 12; ++i) lines += (i % 2 == 0 ? "G91 X0.5\n" : "G91 Y0.25\n");
   return {lines + "G90 G1 X30\nG1 Y20\n", along_axes};
 }
 
-// In pieces of 5 mm, each with a command of its own.
+// A diagonal of lines of 5 mm, one command each.
 Cut diagonal() {
   std::string lines;
   for (int i = 1; i <= 13; ++i) lines += fmt::format("G1 X{} Y{}\n", 4 * i, 3 * i);
@@ -128,14 +129,14 @@ std::string laser_program(const char* spindle, const Cut& cut) {
 }
 
 struct Burnt {
-  double least = 1e9;  // shares of the programmed energy, of each mm
+  double least = 1e9;  // smallest and largest energy of a mm, as fractions of the programmed energy
   double most = 0;
   std::size_t mm = 0;
   std::uint64_t edges = 0;
   bool on = false;
 };
 
-// Holds and overrides come while the card moves.
+// Runs a cut; `disturbed`: with holds and overrides while the card moves.
 Burnt burn(const char* spindle, const Cut& cut, bool disturbed) {
   machine::Machine machine = machine::default_machine();
   for (const char axis : {'x', 'y'})
@@ -170,7 +171,7 @@ Burnt burn(const char* spindle, const Cut& cut, bool disturbed) {
   runner.plan();
   runner.run(card);
   Burnt burnt;
-  const double programmed = kLaserPower * kLaserClock / kLaserFeed;  // lit clocks of 1 mm
+  const double programmed = kLaserPower * kLaserClock / kLaserFeed;  // clocks with the laser on per mm
   for (const double lit : meter.lit()) {
     burnt.least = std::min(burnt.least, lit / programmed);
     burnt.most = std::max(burnt.most, lit / programmed);

@@ -1,5 +1,5 @@
-// A program that runs into a limit switch of the machine file, on the model's card: it stops as the file says, FAULT
-// names limit and axis, the position is right, and the way back is free.
+// A program that runs into a limit switch of the machine file, on the model's card: it stops as the machine file says,
+// FAULT names the limit and the axis, the position is right, and the way back is free.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ class Limits : public testing::Test {
     machine::apply_override(machine_, "inputs.y_limit_minus={input=4, normally=\"open\"}");
     machine::apply_override(machine_, "inputs.filter=0.5");
   }
-  // Normally closed, with a pull-up: pressed is 1.
+  // Input 3 is normally closed and has a pull-up: it reads 1 when the switch is pressed.
   void press_at(std::uint64_t clock, std::uint32_t pins) {
     bus_.at(clock, [pins](sim::Engine& engine) { engine.set_inputs(pins); });
   }
@@ -60,7 +60,7 @@ class Limits : public testing::Test {
   test::Steps steps_;
 };
 
-// Polarity: inputs 3 and 4 wired and at rest are 0 and 1; so does an unwired simulated card stand.
+// An unwired input of a simulated card has the level that a wired one has at rest: 0 for input 3, 1 for input 4.
 TEST_F(Limits, NothingIsActiveOnACardThatIsNotWired) {
   EXPECT_EQ(fault_of("G1 X2 Y-2 F3000\n"), "no fault");
   EXPECT_EQ(card_.read_inputs(), 0U);
@@ -81,7 +81,7 @@ TEST_F(Limits, StopsAtOnceWhereNoOvertravelIsDeclared) {
   press_at(kPressed, 0b11000);
   EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
   EXPECT_EQ(card_.read_limit_state().plus, 1);
-  // 50 mm/s for the filter, a scan, and what is on its way.
+  // The travel at 50 mm/s during the filter's time and one scan, plus at most 4 pulses that are already on their way.
   EXPECT_LE(pulses_behind(), 4 + static_cast<std::int64_t>(50 * kPulsesOfAMm * (0.0005 + 256.0 / kSlowClock)));
   EXPECT_GE(pulses_behind(), 1);
   const driver::Snapshot now = card_.read_snapshot();
@@ -101,20 +101,21 @@ TEST_F(Limits, TheWayBackIsFreeAndTheWayOnIsNot) {
   there.start = position.millimetres();
   EXPECT_THAT(fault_of("G91\nG1 X1 F3000\n", there), HasSubstr("LIMIT (axis 0 plus)"));
   card_.clear_faults();
-  // Released: free.
+  // The switch is released: the way on is free.
   engine_->set_inputs(0b10000);
   position.look(card_.read_snapshot());
   there.start = position.millimetres();
   EXPECT_EQ(fault_of("G91\nG1 X1 F3000\n", there), "no fault");
 }
 
-// 50 mm/s of 150: the slew is doubled once, so that the ramp takes 0.15 s. Half of it and the filter: some 4 mm.
+// At 50 of 150 mm/s the slew is doubled once, so that the ramp takes 0.15 s. Half of that time at 50 mm/s, plus the
+// filter, is about 4 mm.
 TEST_F(Limits, StopsOnARampWhereTheOvertravelIsLongEnough) {
   machine::apply_override(machine_, "axis.x.overtravel=30");
   machine::apply_override(machine_, "axis.y.overtravel=30");
   press_at(kPressed, 0b11000);
   EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
-  engine_->wait(kSlowClock);  // the ramp goes on
+  engine_->wait(kSlowClock);  // the ramp continues after the fault
   EXPECT_GT(pulses_behind(), static_cast<std::int64_t>(3 * kPulsesOfAMm));
   EXPECT_LT(pulses_behind(), static_cast<std::int64_t>(5 * kPulsesOfAMm));
   const driver::Snapshot now = card_.read_snapshot();
@@ -122,13 +123,13 @@ TEST_F(Limits, StopsOnARampWhereTheOvertravelIsLongEnough) {
   EXPECT_FALSE(now.status.busy);
 }
 
-// The switch at the other end, normally open: it reads 0 when it is pressed.
+// The switch at the other end is normally open: it reads 0 when it is pressed.
 TEST_F(Limits, NormallyOpenAtTheNegativeEnd) {
   press_at(kPressed, 0b00000);
   EXPECT_THAT(fault_of("G1 Y-100 F3000\n"), HasSubstr("LIMIT (axis 1 minus)"));
 }
 
-// Shorter than the filter.
+// The bounce is shorter than the filter.
 TEST_F(Limits, ABounceStopsNothing) {
   press_at(kPressed, 0b11000);
   press_at(kPressed + kSlowClock / 2500, 0b10000);
@@ -138,7 +139,7 @@ TEST_F(Limits, ABounceStopsNothing) {
 TEST_F(Limits, TheFeedHoldButtonHoldsUntilCycleStart) {
   machine::apply_override(machine_, "inputs.feed_hold=5");
   machine::apply_override(machine_, "inputs.cycle_start=6");
-  // At rest the buttons, normally open, read 1.
+  // At rest the buttons, which are normally open, read 1.
   press_at(kPressed, 0b1010000);
   press_at(kPressed + kSlowClock / 10, 0b1110000);
   bool held = false;
@@ -149,7 +150,7 @@ TEST_F(Limits, TheFeedHoldButtonHoldsUntilCycleStart) {
   EXPECT_EQ(card_.read_snapshot().position[0], 50 * static_cast<std::int32_t>(kPulsesOfAMm));
 }
 
-// A machine file that had the polarity wrong: with the right one the input is at rest at once, whatever its filter.
+// After a wrong polarity in the machine file is corrected, the input is inactive at once, without the filter's delay.
 TEST_F(Limits, AnotherPolarityCountsAtOnce) {
   engine_->set_input(7, true);
   machine::apply_override(machine_, "inputs.x_drive_fault={input=7, filter=20, normally=\"closed\"}");

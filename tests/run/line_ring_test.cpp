@@ -32,7 +32,7 @@ TEST(LineRing, ClampsToWhatItHas) {
   EXPECT_EQ(ring.current(), 97U) << "the oldest";
 }
 
-// The card's counter has 32 bits, a program may have more commands.
+// The card's counter has 32 bits, but a program may have more commands.
 TEST(LineRing, CountsBeyond32Bits) {
   LineRing ring(2);
   ring.put(1);

@@ -1,4 +1,5 @@
-// Programs whose stops take longer than what the queues hold: a host that is in time hardly ever makes the card hold.
+// Programs whose stops take longer than the contents of the queues: a host that is in time hardly ever makes the card
+// hold.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ namespace {
 
 struct RouterRun {
   std::uint32_t under_runs = 0;
-  double planned = 0;  // s
+  double planned = 0;  // seconds
   double seconds = 0;
 };
 
@@ -37,8 +38,8 @@ class RouterCard {
   DistantBus bus_;
 };
 
-// Each arc's ramps are many pieces of few ticks. They fill the feed queue, whose ticks are fewer than a stop from the
-// quick line takes.
+// The ramps of each arc are many pieces of few ticks. They fill the feed queue with fewer ticks than a stop from the
+// fast line takes.
 TEST(NoUnderRun, WhereArcsFollowAQuickLine) {
   for (const int length : {5, 20}) {
     std::string program = fmt::format("G0 X{}\nF300 G1 Y0.3\n", length);
@@ -50,7 +51,8 @@ TEST(NoUnderRun, WhereArcsFollowAQuickLine) {
   }
 }
 
-// Of the programs of seeds 1 to 3,000 two hold. All lateness, waits at the begin included, is 122.7 s of 24,985 s.
+// Of the programs with seeds 1 to 3,000, two cause a hold. The total lateness, including the waits at the start, is
+// 122.7 s of 24,985 s.
 TEST(NoUnderRun, RandomProgramsHardlyEver) {
   const std::uint64_t programs = std::getenv("TRAMMEL_LONG") != nullptr ? 10'000 : 50;
   std::uint64_t starved = 0;

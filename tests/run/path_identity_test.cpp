@@ -50,8 +50,8 @@ TEST(ShaperDelay, MeasuresAndJudgesEachPulse) {
   EXPECT_EQ(delay.range()->most, 31U);
 }
 
-// The pins from the path by the shaper's rule alone (docs/reference/behaviour.md): a pulse comes 6 clocks after its
-// step, and as much later as the pulse before it and the direction's times ask for.
+// Predicts the pulses at the pins from the path's steps by the shaper's rule (docs/reference/behaviour.md): a pulse
+// comes 6 clocks after its step, or later if the pulse before it or the times of the direction require that.
 class ShaperRule final : public driver::StepSink {
  public:
   struct Times {
@@ -99,7 +99,7 @@ class ShaperRule final : public driver::StepSink {
   std::array<std::vector<driver::PinStep>, card_map::kMaxAxes> made_;
 };
 
-// Lines of a program that come slowly: card time goes by before each.
+// A program whose lines come slowly: card time passes before each line.
 class SlowLines final : public gcode::LineSource {
  public:
   SlowLines(std::unique_ptr<gcode::LineSource> lines, driver::Bus& bus, std::chrono::nanoseconds pause)
@@ -125,7 +125,7 @@ struct Made {
   std::uint64_t cycles;
 };
 
-// What happens in time to one run.
+// Disturbances of one run's timing.
 struct Trouble {
   double bytes_per_second = 1e9;
   std::chrono::nanoseconds line_pause{0};
@@ -155,7 +155,7 @@ Made run(const Trouble& trouble) {
   driver::Card card = driver::Card::open(bus);
   PathIdentity identity;
   ShaperDelay delay;
-  // 2 us and 1 us at 400 kHz: a clock each.
+  // 2 us and 1 us are one clock each at 400 kHz.
   ShaperRule rule({1, 1, 1, 1});
   StepFork fork;
   fork.add(identity);

@@ -1,4 +1,4 @@
-// Outputs that a program switches, on a card: that they come without a stop, and that the host counts on as before.
+// Outputs that a program switches, on a card: they switch without a stop, and the host's count of commands stays right.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -41,7 +41,7 @@ class Bench {
   StepFork fork;
 };
 
-// Each pair of words beside a line; a queue's worth of commands and more.
+// Each pair of output words precedes a line. The program has more commands than fit in a queue.
 std::string program(int lines_of_it) {
   std::string text = "F1200\n";
   for (int i = 0; i < lines_of_it; ++i)
@@ -59,8 +59,8 @@ TEST(PathOutputs, AreCountedByTheHostAsTheCardDoes) {
   EXPECT_EQ(bench.recorder.outputs()[1].on, 0U);
 }
 
-// 20 mm/s and a line of 1 mm each 50 ms: where the card is says the count of commands begun, in which outputs do not
-// count.
+// A line of 1 mm takes 50 ms at 20 mm/s. The count of commands begun tells the line at which the card is; output
+// commands are not in this count.
 TEST(PathOutputs, TheLineThatTheCardIsAtIsKnown) {
   Bench bench;
   bench.bus.at(std::uint64_t{kSlowClock} * 5, [&](sim::Engine&) { bench.card.request_stop(); });
@@ -70,7 +70,7 @@ TEST(PathOutputs, TheLineThatTheCardIsAtIsKnown) {
   } catch (const StoppedOnPath& stopped) {
     line = stopped.line();
   }
-  const auto here = static_cast<std::size_t>(bench.engine->positions()[0]) / 80;  // mm; line 2 n + 1 ends at n
+  const auto here = static_cast<std::size_t>(bench.engine->positions()[0]) / 80;  // mm; program line 2 n + 1 ends at n
   EXPECT_NEAR(static_cast<double>(line), static_cast<double>(2 * (here + 1) + 1), 1);
 }
 

@@ -42,12 +42,13 @@ TEST(PathPoints, OfFewPointsAreAllOfThem) {
 double way_of(const std::vector<PathSpeed::Sample>& samples) {
   double way = 0;
   for (const auto& sample : samples) way += sample.speed;
-  return way * 2 * samples.front().seconds;  // the first sample stands half a bin from 0
+  return way * 2 * samples.front().seconds;  // the first sample is at half a bin
 }
 
 TEST(PathSpeed, AConstantSpeedComesOutConstant) {
   PathSpeed speed(1'000'000);
-  // 80 steps/mm at 10 mm/s: a step every 1,250 clocks, some wait a clock or two, and bins that are no multiple of it.
+  // 80 steps/mm at 10 mm/s: a step every 1,250 clocks; some come a clock or two late. The width of a bin is not a
+  // multiple of 1,250 clocks.
   for (std::uint64_t i = 0; i < 2'000; ++i) speed.add(625 + 1'250 * i + i % 3, 0, 1.0 / 80);
   const auto samples = speed.samples();
   EXPECT_LE(samples.size(), 1024U);

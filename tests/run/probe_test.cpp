@@ -1,5 +1,5 @@
-// Programs that probe, on the model's card: where the steps at the pins say that the edge was, what the lines behind it
-// make of that, and where a run stops that cannot go on.
+// Programs that probe, on the model's card: the position of the edge according to the steps at the pins, the lines that
+// use this position, and the place at which a run stops that cannot continue.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kPulses = 80;  // a mm
+constexpr std::int64_t kPulses = 80;  // pulses per mm
 constexpr std::size_t kZ = 2;
 
 class ProbingProgram : public testing::Test {
@@ -59,7 +59,7 @@ class ProbingProgram : public testing::Test {
   Plan plan_;
 };
 
-// At 2 mm/s a pulse takes 6,250 clocks: the input's synchroniser hides none.
+// At 2 mm/s a pulse takes 6,250 clocks, so the delay of the input's synchroniser does not change the position.
 TEST_F(ProbingProgram, ResultIsWhereTheCardWas) {
   touch_at(2);
   const Outcome outcome = run("G0 X3\nG38.2 Z-10 F120\n#1=#5063\nG0 Z[#1+2] X[#5070*10]\nM2\n");
@@ -77,7 +77,7 @@ TEST_F(ProbingProgram, ResultIsWhereTheCardWas) {
   EXPECT_EQ(outcome.parameters.at(1), static_cast<double>(edge) / kPulses);
 }
 
-// The recorder refuses a step of a command that nobody announced.
+// The recorder rejects a step of a command that was not announced to it.
 TEST_F(ProbingProgram, StepsBelongToTheirCommands) {
   StepRecorder::Options options;
   StepRecorder recorder(options, kinematics::Kinematics(machine_));
@@ -161,7 +161,7 @@ TEST_F(ProbingProgram, TheLevelIsTheMachineFiles) {
   EXPECT_EQ(error_of("G38.2 Z-1 F600\nM2\n"), "p.ngc:1: the probe touches before it moves");
 }
 
-// The edge comes near Z-3.9, the target is Z-10: what is wrong depends on that.
+// The edge is near Z-3.9, the target is Z-10. Whether the later lines are valid depends on that position.
 TEST_F(ProbingProgram, LinesThatDependAreCheckedWhenReached) {
   machine_.axes[0].max = 5;
   touch_at(2);
@@ -174,7 +174,7 @@ TEST_F(ProbingProgram, LinesThatDependAreCheckedWhenReached) {
 TEST_F(ProbingProgram, WhatIsWrongAtTheTargetAloneRuns) {
   machine_.axes[0].min = -5;
   touch_at(2);
-  // At the target: X-8, a division by 0, an arc off its circle, a feed of 0.
+  // With the target's position these lines would be errors: X-8, a division by 0, an arc off its circle, a feed of 0.
   const Outcome outcome =
       run("G38.2 Z-10 F120\n#1=#5063\nG0 X[#1+2]\nG0 X[1/[#1+10]]\nG0 X0 Y0\nG91 G2 X2 I[1+0*[1/[#1+10]]] F600\n"
           "G90 G1 X0 F[10+#1]\nM2\n");

@@ -1,5 +1,5 @@
-// Going on at a place of the path: the filter between planner and stream, and the card's steps from there on, which are
-// those of the undisturbed run.
+// Continuing at a place of the path: the filter between planner and stream, and the card's steps from that place on,
+// which equal those of the undisturbed run.
 #include "trammel/run/replay.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ bool is_geometry(const Command& command) {
   return !std::holds_alternative<FeedCommand>(command) && driver::counts_as_begun(command);
 }
 
-// Ticks of a path and what a tick of it is in steps' numbers: 2^-40.
+// The ticks of a path command, and its path ticks per tick in units of 2^-40.
 std::pair<std::uint64_t, std::uint64_t> path_ticks_of(const Command& command) {
   constexpr std::uint64_t kOne = std::uint64_t{1} << 40;
   if (const auto* line = std::get_if<driver::LineCommand>(&command)) return {line->ticks, kOne};
@@ -47,10 +47,10 @@ std::pair<std::uint64_t, std::uint64_t> path_ticks_of(const Command& command) {
   return {0, kOne};
 }
 
-// Command counted from the program's first one, tick, axis, direction.
+// Number of the command, counted from the program's first one; tick, axis, direction.
 using ReplayStep = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
 
-// `first`: number of the list's first counted command.
+// `first`: number of the first counted command in `commands`.
 std::vector<ReplayStep> replay_steps(const Commands& commands, const std::vector<driver::PathStep>& made,
                                      std::uint64_t first) {
   std::vector<std::uint64_t> numbers;
@@ -66,7 +66,7 @@ struct PathVariant {
   const char* name;
   const char* program;
   planner::ArcsBy arcs;
-  const char* machine;  // entries, with blanks between
+  const char* machine;  // overrides of the machine file, separated by blanks
 };
 
 constexpr const char* kReplayArcs =
@@ -96,7 +96,7 @@ machine::Machine variant_machine(const PathVariant& variant) {
   return machine;
 }
 
-// A card, and the steps that it makes of commands.
+// A card, and the steps that it makes from commands.
 struct ReplayBench {
   explicit ReplayBench(const machine::Machine& machine) {
     engine->set_sink(&steps);
@@ -128,8 +128,8 @@ Commands planned_commands(const PathVariant& variant, const machine::Machine& ma
   return list.commands;
 }
 
-// The steps of the undisturbed run behind `done` ticks of the place's command, and those that a card makes from there
-// on.
+// Compares the steps of the undisturbed run after `done` ticks of the place's command with those that a card makes from
+// the place on.
 void judge_place(const PathVariant& variant, const Commands& all, const std::vector<ReplayStep>& whole,
                  const PathPlace& place, std::uint64_t done) {
   ReplayedCommands rest;
@@ -155,7 +155,7 @@ void judge_place(const PathVariant& variant, const Commands& all, const std::vec
       << whole.end() - from << " wanted";
 }
 
-// Feed ticks of a command behind which its path tick has come.
+// Number of feed ticks of a command after which its path tick `path_tick` has come.
 std::uint64_t ticks_up_to(const Command& command, std::uint64_t path_tick) {
   const driver::Uint128 half(std::uint64_t{1} << 39);
   return driver::ceil_div((driver::Uint128(path_tick) << 40) - half, driver::Uint128(path_ticks_of(command).second))
@@ -169,7 +169,7 @@ std::mt19937_64 seeded() {
 
 class ReplayOf : public ::testing::TestWithParam<std::size_t> {};
 
-// The first places and the last ones of a command too, and those right before a step and behind it.
+// Also tests the first and the last tick of a command, and the ticks just before and just after a step.
 TEST_P(ReplayOf, FromAnyTickOnTheStepsOfTheUndisturbedRun) {
   std::mt19937_64 random = seeded();
   const PathVariant& variant = path_variants()[GetParam()];
@@ -203,7 +203,8 @@ INSTANTIATE_TEST_SUITE_P(Paths, ReplayOf, ::testing::Range(std::size_t{0}, path_
                            return name;
                          });
 
-// A piece clock by clock: clocks up to so many ticks, and the rate in use then, ticks a clock.
+// Simulates a piece clock by clock. Returns the clocks up to `ticks` ticks, and the rate then in use, in ticks per
+// clock.
 std::pair<std::uint64_t, double> clocks_to(const FeedCommand& piece, std::uint64_t ticks) {
   double rate = static_cast<double>(piece.rate) * 0x1p-64;
   double acceleration = static_cast<double>(piece.acceleration) * 0x1p-64;
@@ -225,7 +226,8 @@ std::pair<std::uint64_t, double> clocks_to(const FeedCommand& piece, std::uint64
   return {clocks, in_use};
 }
 
-// From a velocity to another one, ticks a clock, within so many updates; with a jerk that brings the acceleration to 0.
+// A piece from one rate to another, in ticks per clock, over `updates` updates; with `jerk` the jerk brings the
+// acceleration to 0.
 FeedCommand ramp(double from, double to, double updates, bool jerk) {
   FeedCommand piece;
   const double change = (to - from) / updates;
@@ -255,7 +257,7 @@ TEST(RestOfAPiece, GoesOnAtTheRateThatThePieceHasThere) {
     const double update =
         (std::abs(static_cast<double>(piece.acceleration)) + 2 * std::abs(static_cast<double>(piece.jerk))) * 0x1p-64;
     EXPECT_NEAR(static_cast<double>(rest[0].rate) * 0x1p-64, rate, 1e-9 + update);
-    // A stop's last ticks come at the floor: a fraction of one is as long as all before it.
+    // The last ticks of a stop come at the floor: a fraction of such a tick takes as long as all ticks before it.
     const std::uint64_t last = to == 0 ? 4 : 0;
     std::uint64_t ticks = 0;
     std::uint64_t made = 0;
@@ -296,7 +298,7 @@ FeedCommand piece_of_ticks(std::uint64_t ticks) {
   return piece;
 }
 
-// Two lines under one piece with switches between them, a dwell, a third line.
+// Two lines under one piece with output switches between them, a dwell, and a third line.
 const Commands& switching_commands() {
   static const Commands commands{driver::OutputCommand{5, 0}, piece_of_ticks(300),         line_of_ticks(100),
                                  driver::OutputCommand{2, 4}, driver::MarkCommand{},       line_of_ticks(200),
@@ -305,7 +307,7 @@ const Commands& switching_commands() {
   return commands;
 }
 
-// Of several pulses passed over the last one holds, and comes before the silence.
+// Of several PWM commands that are skipped, the last one holds. It is sent before the silent piece.
 TEST(Replay, RestoresThePulses) {
   ReplayedCommands rest;
   Replay replay(rest, PathPlace{1, 20});

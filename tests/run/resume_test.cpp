@@ -1,4 +1,5 @@
-// Runs that are stopped anywhere, and go on: the steps before and after together are those of the undisturbed run.
+// Runs that are stopped anywhere and continued: the steps before and after the stop together are those of the
+// undisturbed run.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -17,7 +18,7 @@
 namespace trammel::run {
 namespace {
 
-// Counted commands of a run by their number, so that steps of several runs compare.
+// Numbers the counted commands of a run within the whole program, so that steps of several runs can be compared.
 class CountedCommands final : public Observer {
  public:
   explicit CountedCommands(std::uint64_t first) : next_(first) {}
@@ -32,20 +33,20 @@ class CountedCommands final : public Observer {
   std::vector<std::uint64_t> numbers_;
 };
 
-// Counted command of the program, tick, axis, direction.
+// Number of the program's counted command, tick, axis, direction.
 using ResumedStep = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
 
 struct ResumeCase {
   const char* name;
   planner::ArcsBy arcs;
-  const char* entry;  // of the machine file
+  const char* entry;  // override of the machine file
 };
 
 constexpr char kResumeProgram[] =
     "F3000\nM3\nG1 X4 Y1.5\nG2 X6 Y3.5 I2\nG4 P0.1\nM8\nG1 X1 Y4.3 Z0.7\nG3 X1 Y4.3 J-1.5\nG0 X9\nG3 X8 Y3 R2 Z0.1 "
     "F900\nM5\nG0 X0 Y0 Z0\n";
 
-// A card that lives through several runs of one program.
+// A card that is used by several runs of one program.
 class ResumeBench {
  public:
   explicit ResumeBench(const ResumeCase& variant, std::uint64_t last_cycle = ~std::uint64_t{0})
@@ -56,11 +57,11 @@ class ResumeBench {
     if (*variant.entry != 0) machine::apply_override(machine_, variant.entry);
     settings_.arcs = variant.arcs;
   }
-  // Of the next run: none of these for the whole program.
+  // Start of the next run. Without these calls it runs the whole program.
   void from(const RunSettings::Place& place) { settings_.place = place; }
   void from_line(std::size_t line) { settings_.first_line = line; }
 
-  // `opened` gets the card before anything moves. The steps are taken whatever ends the run.
+  // Calls `opened` with the card before anything moves. Collects the steps also when the run ends with an exception.
   template <class BusOfRun, class Opened>
   void run(BusOfRun& bus, std::chrono::milliseconds watchdog, Opened opened) {
     driver::Card card = driver::Card::open(bus);
@@ -81,7 +82,7 @@ class ResumeBench {
   void run() {
     run(*engine, std::chrono::milliseconds(0), [](driver::Card&) {});
   }
-  // Until the host dies; the card stops by itself.
+  // Runs until the host dies. The card then stops by itself.
   void run_and_die() {
     EXPECT_THROW(run(dying_, std::chrono::milliseconds(300), [](driver::Card&) {}), RunError);
     engine->wait(4 * kSlowClock);
@@ -120,7 +121,7 @@ class ResumeBench {
             planner::limits_of(card.identification()), settings};
   }
   void take(const CountedCommands& counted) {
-    engine->wait(4 * kSlowClock);  // a ramp of the card's own
+    engine->wait(4 * kSlowClock);  // the card may still be on the ramp of its own stop
     for (const driver::PathStep& step : made_.path) {
       steps_.emplace_back(counted.of(step.command), step.tick, step.axis, step.direction);
     }
@@ -143,10 +144,10 @@ class Resume : public ::testing::TestWithParam<ResumeCase> {
   }
 
   ResumeBench whole_{GetParam()};  // the undisturbed run
-  std::uint64_t end_ = 0;          // of its motion, clocks
+  std::uint64_t end_ = 0;          // end of its motion, clocks
 };
 
-// Each run is stopped at another place, goes on, and is stopped again.
+// Each run is stopped at another place, continued, and stopped again.
 TEST_P(Resume, StopsOnRequestAndGoesOnWithTheSameSteps) {
   for (std::uint64_t part = 1; part < 12; ++part) {
     SCOPED_TRACE(part);
@@ -192,10 +193,11 @@ INSTANTIATE_TEST_SUITE_P(Paths, Resume,
 
 constexpr ResumeCase kByGenerator{"generator", planner::ArcsBy::kGenerator, ""};
 
-// As where something else has moved the card since: REST is that stop's then.
+// A place that is not on the path, as when something else has moved the card since the stop: REST then belongs to a
+// later stop.
 TEST(PlaceOfARun, IsRefusedWhereTheMachineWasNotOnThePath) {
   ResumeBench bench(kByGenerator);
-  RunSettings::Place place;  // the begin of the first line
+  RunSettings::Place place;  // the start of the first line
   place.position[0] = 1;
   bench.from(place);
   EXPECT_THROW(bench.run(), ProgramError);
@@ -210,7 +212,7 @@ TEST(PlaceOfARun, IsRefusedWhereTheMachineWasNotOnThePath) {
   EXPECT_FALSE(bench.steps().empty());
 }
 
-// From each line on, the whole run's steps of that line and all behind it.
+// A run from each line on makes the whole run's steps of that line and of all later lines.
 TEST(FromLine, TheStepsOfTheUndisturbedRun) {
   ResumeBench whole(kByGenerator);
   whole.run();

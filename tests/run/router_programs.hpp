@@ -1,4 +1,4 @@
-// Random programs for a machine whose stops are long, and the bus that it is run on.
+// Random programs for a machine with long stops, and a bus with a high latency.
 #pragma once
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ inline machine::Machine router() {
   return machine;
 }
 
-// Lines, arcs, chords of a curve, rapids and dwells over four decades of length and two of speed.
+// Lines, arcs, chords of a curve, rapids and dwells, with lengths over four decades and speeds over two.
 class RouterProgram {
  public:
   explicit RouterProgram(std::uint64_t seed) : random_(seed) {
@@ -117,7 +117,7 @@ class RouterProgram {
   double y_ = 0;
 };
 
-// 1 MB/s, and each transfer takes a millisecond beside its bytes. Dies when told.
+// A bus of 1 MB/s with an additional latency of 1 ms per transfer. It fails after `last_cycle`.
 class DistantBus final : public driver::Bus {
  public:
   explicit DistantBus(sim::Engine& engine, std::uint64_t last_cycle = ~std::uint64_t{0})

@@ -73,7 +73,7 @@ TEST_F(RunnerTest, RunsAProgramToItsEnd) {
   EXPECT_LE(recorder.deviation().largest_line(), 0.7081);
 }
 
-// Where the path is, seen as a circle: by how many pulses of an axis it strays from it.
+// Measures the largest deviation of the path from a circle, in pulses of an axis.
 class CircleMeter final : public driver::StepSink {
  public:
   CircleMeter(double centre_x, double centre_y, double radius, double scale_x, double scale_y)
@@ -85,7 +85,7 @@ class CircleMeter final : public driver::StepSink {
     ++steps;
     const double x = at_[0] / scale_[0] - centre_[0];
     const double y = at_[1] / scale_[1] - centre_[1];
-    const double off = std::abs(std::hypot(x, y) - radius_) / radius_;  // in mm, along the radius
+    const double off = std::abs(std::hypot(x, y) - radius_) / radius_;  // relative error of the radius
     farthest = std::max(farthest, off * std::hypot(x * scale_[0], y * scale_[1]));
   }
 
@@ -99,7 +99,8 @@ class CircleMeter final : public driver::StepSink {
   std::array<double, 2> at_{};
 };
 
-// On axes of unequal steps/mm: the accumulator's ellipse, whose centre and semi-axes are rounded to whole pulses.
+// A circle on axes of unequal steps/mm is an ellipse in pulses. The accumulator rounds its centre and semi-axes to
+// whole pulses.
 TEST_F(RunnerTest, ACircleOnUnequalScalesGoesOutAsAnEllipse) {
   machine::apply_override(machine_, "axis.y.steps_per_mm=123.4");
   RunSettings settings;
@@ -133,7 +134,7 @@ TEST_F(RunnerTest, AnEllipsesPulsesAreNearTheCircle) {
   EXPECT_GT(circle.farthest, 0.3);
 }
 
-// In 8 directions the pulses are nearer to the circle, with fewer of them alone.
+// Steps in 8 directions stay closer to the circle than steps of one axis at a time.
 TEST_F(RunnerTest, EightDirectionsAreNearerToTheCircle) {
   const auto farthest = [&](planner::ArcsBy arcs) {
     RunSettings settings;
@@ -164,7 +165,7 @@ TEST_F(RunnerTest, ConfiguresTheCard) {
   EXPECT_EQ(card_.timing().pulse_period[0], driver::shortest_pulse_period(10, 20));
 }
 
-// Full speed goes to rest in 2 v / a of the axis that takes longest: 0.3 s, or as slowly as the card can.
+// The slew time is 2 v / a of the axis with the longest, 0.3 s here, but at most that of the card's slowest slew.
 TEST_F(RunnerTest, SlewFollowsFromTheAxes) {
   const auto slew = [this] { return card_.parts().registers.read(card_map::reg::kSlew); };
   run("G0 X1\n");
@@ -239,7 +240,7 @@ TEST_F(RunnerTest, RefusesAProgramThatChangesBetweenThePasses) {
   EXPECT_THAT(error_of([&] { runner.run(card_); }), HasSubstr("has changed"));
 }
 
-// Read once: what stands before the error is made, and the card is at rest.
+// The program is read only once: the lines before the error are executed, and the card comes to rest.
 TEST_F(RunnerTest, StreamsWithoutAFirstPass) {
   Runner runner = make("F600\nG1 X1\nG1 Y2\nM3\n");
   const Outcome outcome = runner.stream(card_);
@@ -261,7 +262,7 @@ TEST_F(RunnerTest, RefusesAnotherCardThanThePlanned) {
   EXPECT_THROW(runner.run(card_), std::invalid_argument);
 }
 
-// The queues hold some 500 dwells ahead of the one that runs.
+// The queues hold about 500 dwells behind the one that runs.
 TEST_F(RunnerTest, NamesTheLineThatRanAndNotTheLastThatWasSent) {
   std::string text = "G0 X1\n";
   for (int i = 0; i < 600; ++i) text += "G4 P1\n";
@@ -286,7 +287,7 @@ TEST_F(RunnerTest, NamesTheLineThatRanAndNotTheLastThatWasSent) {
   EXPECT_GT(events.list.size(), 3 * 500U) << "the queues were full";
 }
 
-// Where the link lives the card is asked once more.
+// If the link still works, the runner reads the card once more to find the line.
 TEST_F(RunnerTest, NamesTheLineOfARefusal) {
   class Meddler final : public Observer {
    public:
@@ -294,7 +295,7 @@ TEST_F(RunnerTest, NamesTheLineOfARefusal) {
     void progress(const Progress& /*progress*/) override {
       if (engine_.cycles() < 2'500'000 || std::exchange(done_, true)) return;
       try {
-        engine_.write(0xFF0, 0);  // no register
+        engine_.write(0xFF0, 0);  // not a register
       } catch (const driver::Error&) {
       }
     }

@@ -1,4 +1,4 @@
-// Two motors on one letter.
+// Two motors on one axis letter.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,14 +23,14 @@ std::vector<driver::PinStep> of(const test::Steps& steps, unsigned axis) {
 }
 
 TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
-  machine::Machine machine = machine::default_machine();  // X Y Z E
+  machine::Machine machine = machine::default_machine();  // motors: X Y Z E
   machine::apply_override(machine, "axis.y.second_motor=true");
   machine::apply_override(machine, "axis.y.second_inverted=true");
   const auto engine = sim::make_model_engine(sim::EngineOptions{5, 1'000'000, false});
   test::Steps steps;
   engine->set_sink(&steps);
   driver::Card card = driver::Card::open(*engine);
-  // Lines and an arc of equal scales, which goes out as lines.
+  // Lines, and an arc. The arc is sent as lines although X and Y have equal scales.
   Runner runner(
       [] { return std::make_unique<gcode::TextLines>("G1 X2 Y3 F900\nG3 X0 Y1 I-1 J-1\nG0 X0 Y-1\n", "p.ngc"); },
       machine, planner::limits_of(card.identification()));
@@ -49,7 +49,7 @@ TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
   };
   EXPECT_GT(of(steps, 1).size(), 240U + 160U);
   expect_together();
-  // The pins are its own: its direction is inverted, the axis's is not.
+  // The second motor has an inversion of its own: its direction is inverted, the first motor's is not.
   EXPECT_EQ(card.parts().registers.read(card_map::reg::mode(1)) & card_map::field::kModeInvertSecond, 0U);
   EXPECT_NE(card.parts().registers.read(card_map::reg::mode(4)) & card_map::field::kModeInvertSecond, 0U);
 

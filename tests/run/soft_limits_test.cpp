@@ -1,4 +1,4 @@
-// The machine file's min and max in the card: which axes have them there, in which pulses, and when they go.
+// The machine file's min and max in the card: which axes have them there, at which pulses, and when they are removed.
 #include <gtest/gtest.h>
 
 #include "trammel/card_map.hpp"
@@ -19,7 +19,8 @@ class SoftLimitsInTheCard : public ::testing::Test {
     machine::apply_override(machine_, "axis.x.max = 200.006");  // 80 steps/mm
     machine::apply_override(machine_, "axis.z.max = 50");
   }
-  // Machine zero of all axes where the card stands, `zero` pulses from its own.
+  // Sets machine zero of all axes to the position-counter value `zero`. The axes in `valid` (bit n: axis n) get a valid
+  // place.
   void set_place(std::int32_t zero, std::uint8_t valid = 0xF) {
     CardPlace place = read_card_place(card_);
     keep_place(card_, place, scales_of(machine_), motors_of(machine_));

@@ -1,5 +1,5 @@
-// Programs that wait for the spindle's speed, on the model's card: when the first step behind M3 leaves the pins, and
-// what ends a wait for a speed that never comes.
+// Programs that wait for the spindle's speed, on the model's card: the time of the first step after M3, and the end of
+// a wait for a speed that is never reached.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ class SpindleAtSpeed : public testing::Test {
     }
     return "";
   }
-  // X, pulses, at a time of the card.
+  // Position of X in pulses at a time of the card.
   std::int64_t x(double seconds) const { return steps_.position(0, static_cast<std::uint64_t>(seconds * kClock)); }
 
   machine::Machine machine_ = machine::default_machine();

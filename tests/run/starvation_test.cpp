@@ -1,5 +1,5 @@
-// A card that gets its commands too late, or no more: it holds on the path, goes on by itself, and stays where it is
-// when the host has died.
+// A card that gets its commands too late, or no more commands: it holds on the path and continues by itself. If the
+// host has died, it stays where it is.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@
 namespace trammel::run {
 namespace {
 
-// A circle of R 10 mm at 20 mm/s. In 3000 chords of 0.02 mm it takes a line a millisecond, and a stop, which is 3 mm
-// long, is more than the quarter of full queues that a stop distance may be; in 1000 it is less.
+// A circle of radius 10 mm at 20 mm/s. With 3000 chords of 0.02 mm each line takes 1 ms, and a stop, which is 3 mm
+// long, exceeds the largest stop distance, a quarter of the full queues. With 1000 chords it does not.
 constexpr int kChords = 3000;
 constexpr int kLongChords = 1000;
 
@@ -33,7 +33,7 @@ std::string circle(int chords) {
   return text;
 }
 
-// The host does nothing for a while, now and then.
+// Makes the host pause for `seconds` at every `every`-th block.
 class Stalls final : public Observer {
  public:
   Stalls(sim::Engine& engine, std::uint64_t every, double seconds)
@@ -78,8 +78,8 @@ class StarvationTest : public testing::Test {
     EXPECT_TRUE(outcome.under_runs);
     return {identity_.text(), outcome.under_runs.value_or(0), engine_->cycles()};
   }
-  // The host dies in mid path; the card stands on it, and whoever comes next goes on from there. The pins' steps are in
-  // steps_ up to where it stood first.
+  // The host dies in mid path. The card comes to rest on the path, and another program continues from there. `made`:
+  // the number of steps up to that rest.
   void die(int chords, std::size_t& made);
   static Made plain() {
     class Fresh final : public StarvationTest {
@@ -107,8 +107,8 @@ TEST_F(StarvationTest, SlowBus) {
   EXPECT_GT(starved.cycles, whole.cycles * 3 / 2);
 }
 
-// A line from rest to rest is shorter than what a stop from its speed may take. While it runs the next one comes, its
-// pieces before its path, and the card must not hold for what is behind a stop.
+// Each line runs from rest to rest and is shorter than a stop from its speed may be. While a line runs, the pieces of
+// the next line arrive before its path. The card must not hold because of commands behind a stop.
 TEST_F(StarvationTest, LinesThatEndAtRestAreNotStarvedByThoseBehindThem) {
   std::string program = "G61.1\nF3000\n";
   for (int i = 0; i < 20; ++i) program += "G1 X1\nX0\n";
@@ -149,7 +149,7 @@ void StarvationTest::die(int chords, std::size_t& made) {
   EXPECT_EQ(engine_->read(card_map::reg::kFault), 0U);
   EXPECT_EQ(engine_->read(card_map::reg::kUnderruns), 1U);
   EXPECT_NE(engine_->read(card_map::reg::kStatus) & card_map::field::kStatusUnderrun, 0U) << "held by it still";
-  // Somebody else finds it: the position is known, and a program goes on from there.
+  // Another program opens the card: the position is known, and a program continues from there.
   driver::Card card = driver::Card::open(*engine_);
   card.stop();
   EXPECT_EQ(steps_.path.size(), made);
@@ -166,14 +166,14 @@ void StarvationTest::die(int chords, std::size_t& made) {
 TEST_F(StarvationTest, HostThatDiesInTheMiddle) {
   std::size_t made = 0;
   ASSERT_NO_FATAL_FAILURE(die(kLongChords, made));
-  // A ramp: the last pulses are farther apart than those in the constant phase, by more than a turn of the circle
-  // makes.
+  // A ramp: the last pulses are farther apart than those in the constant phase, by more than the changing direction on
+  // the circle causes.
   const std::uint64_t last_tenth = steps_.pins[made - 1].cycle - steps_.pins[made - 11].cycle;
   const std::uint64_t before = steps_.pins[made - 700].cycle - steps_.pins[made - 710].cycle;
   EXPECT_GT(last_tenth, 2 * before);
 }
 
-// Queues may run dry before it stands; the path and what is known of it are the same.
+// The queues may run dry before the card is at rest. The path and the known position are right all the same.
 TEST_F(StarvationTest, HostThatDiesWhereAStopIsLongerThanTheQueues) {
   std::size_t made = 0;
   ASSERT_NO_FATAL_FAILURE(die(kChords, made));

@@ -80,7 +80,7 @@ TEST(StepRecorder, KeepsOnePointATickForThePicture) {
   EXPECT_FALSE(recorder.speed().empty());
 }
 
-// Lists of any length go through a buffer that does not grow.
+// Lists of any length go through a buffer of fixed size.
 TEST(StepRecorder, WritesAsItGoes) {
   StringSink steps;
   StepRecorder::Options options;

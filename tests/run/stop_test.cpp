@@ -1,4 +1,4 @@
-// A run that is stopped on its path, and the next program right from there.
+// A run that is stopped on its path, and the next program, which starts there.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -20,7 +20,7 @@ namespace {
 constexpr char kStopProgram[] =
     "F3000\nG1 X8 Y3\nG2 X12 Y7 I4\nG4 P0.1\nG1 X2 Y9.3 Z1.7\nG3 X2 Y9.3 J-3\nG1 X30\nG0 X0 Y0 Z0\n";
 
-// A card on a bus of its own, where programs are run one after another.
+// A card on its own bus, for several programs one after another.
 class StopBench {
  public:
   StopBench() { engine->set_sink(&steps); }
@@ -51,7 +51,7 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
   StopBench whole;
   whole.run(kStopProgram);
   const double end = static_cast<double>(whole.steps.pins.back().cycle) / kSlowClock;
-  // Not in the last ramp, which a stop does not shorten.
+  // The last ramp is excluded, because a stop does not shorten it.
   for (double at = 0.03; at < end - 0.2; at += 0.0617) {
     SCOPED_TRACE(at);
     StopBench bench;
@@ -73,7 +73,7 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     EXPECT_EQ(bench.steps.pins.size(), made) << "every step of the path came out, and none after it";
     EXPECT_TRUE(bench.card.in_position());
     EXPECT_FALSE(bench.card.read_status().held) << "the hold is over, or soon will be";
-    // 0.3 s of ramp from full speed; 50 mm/s of 150 take a third of it.
+    // A ramp from full speed takes 0.3 s. At 50 of 150 mm/s the slew is doubled, and the ramp takes half of that.
     EXPECT_LE(
         static_cast<double>(bench.steps.pins.back().cycle - std::min(due, bench.steps.pins.back().cycle)) / kSlowClock,
         0.32);
@@ -96,14 +96,15 @@ TEST(Stop, TellsTheLineThatTheCardWasAt) {
   StopBench bench;
   bench.bus.at(std::uint64_t{7} * kSlowClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
   try {
-    bench.run("F600\nG1 X10\nY10\nX20\nY20\nX30\n");  // a second each
+    bench.run("F600\nG1 X10\nY10\nX20\nY20\nX30\n");  // each line takes a second
     FAIL() << "not stopped";
   } catch (const StoppedOnPath& stopped) {
     EXPECT_EQ(stopped.line(), 5U);
   }
 }
 
-// Lines of a pulse each, with a rest between them, from somebody who is slower than the card: the queue is never full.
+// Lines of one pulse each, with a dwell between them. They do not fill the queue, as if the source were slower than the
+// card.
 class PausingLines final : public gcode::LineSource {
  public:
   PausingLines(driver::Card& card, unsigned& read) : card_(card), read_(read) {}
@@ -130,8 +131,8 @@ TEST(Stop, WhileLinesComeSlowly) {
   EXPECT_LT(read, 60U) << "it was not looked for before the end";
 }
 
-// Before the first command is known, and the card has been given nothing: while a window of blocks is read, and when
-// its last line has been read (SCurvePlan.CallsBeforeEachRamp looks inside the planning of one).
+// Requests a stop before the card has received any command: while a window of blocks is read, or when its last line has
+// been read. (SCurvePlan.CallsBeforeEachRamp tests a stop while a window is planned.)
 class WindowOfLines final : public gcode::LineSource {
  public:
   WindowOfLines(driver::Card& card, unsigned stop_at, unsigned& read) : card_(card), stop_at_(stop_at), read_(read) {}
@@ -179,7 +180,7 @@ TEST(Stop, WhileAWindowIsPlanned) {
   }
 }
 
-// In a dwell, with a hold standing, and when there is nothing to stop.
+// Stops in a dwell, in a hold, and when nothing runs.
 TEST(Stop, AtRest) {
   StopBench bench;
   bench.bus.at(kSlowClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
@@ -193,7 +194,8 @@ TEST(Stop, AtRest) {
   EXPECT_EQ(bench.run("G0 X1\n").final_position[0], 80);
 }
 
-// The ramp takes 0.3 s from full ratio; a slew of the slowest kind would take 45 minutes at this clock.
+// The timeout follows from the ramp of 0.3 s from full ratio. A ramp at the slowest slew would take 45 minutes at this
+// clock.
 TEST(Stop, GivesUpWhereTheRampDoesNotEnd) {
   StopBench bench;
   bench.card.set_longest_step_wait(std::chrono::milliseconds(1));
@@ -202,7 +204,7 @@ TEST(Stop, GivesUpWhereTheRampDoesNotEnd) {
   stream.send(driver::FeedCommand{std::uint64_t{1} << 39, std::uint64_t{1} << 60, 0, 0, 1, 0});
   stream.send(driver::LineCommand{std::uint64_t{1} << 39, 1, {std::int64_t{1} << 34}});
   const std::uint64_t before = bench.engine->cycles();
-  // Somebody takes the hold away again.
+  // Another program releases the hold again and again.
   for (unsigned i = 1; i < 3000; ++i) {
     bench.bus.at(before + i * 400, [](sim::Engine& engine) { engine.write(card_map::reg::kHold, 0); });
   }
@@ -219,7 +221,7 @@ TEST(MachinePosition, IsSetByTheHostAndFollowsTheCardThroughItsWrap) {
   position.set(1, 3.00625);  // 240.5 pulses
   EXPECT_EQ(position.pulses()[0], -1000);
   EXPECT_EQ(position.pulses()[1], 241);
-  card.position[0] = -2'147'483'596;  // 100 further, across the wrap
+  card.position[0] = -2'147'483'596;  // 100 pulses further, across the wrap
   card.position[1] = -41;
   position.look(card);
   EXPECT_EQ(position.pulses()[0], -900);

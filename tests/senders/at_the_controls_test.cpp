@@ -1,4 +1,5 @@
-// Real-time commands, homing, probing and several clients, as a sender's user meets them. The card runs in real time.
+// Real-time commands, homing, probing and several clients, as the user of a sender sees them. The card runs in real
+// time.
 #include <gmock/gmock.h>
 
 #include "sender.hpp"
@@ -86,7 +87,7 @@ TEST_F(Controls, WhatSendersDoBesides) {
   }
   sender_.put("\xC2\x91");
   ASSERT_TRUE(sender_.await_state("Idle"));
-  // bCNC's end of a job: a hold in Idle, a reset, and the words that it has kept.
+  // bCNC's end of a job: a hold in Idle, a reset, and the modal words that bCNC has stored.
   sender_.put("!");
   std::this_thread::sleep_for(100ms);
   sender_.put("\x18");

@@ -1,5 +1,5 @@
-// A sender at a Grbl controller with a simulated card behind it, all in this process and as fast as it goes: what
-// `trammel grbl` puts together, with the card's pins in sight.
+// A sender, a Grbl controller and a simulated card in this process, not in real time: the same parts as in `trammel
+// grbl`, with access to the card's pins.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ namespace trammel::test {
 
 inline constexpr std::uint32_t kSessionClock = 1'000'000;
 
-// Of examples/first-machine.toml, with a spindle and a coolant pump at outputs.
+// examples/first-machine.toml, with a spindle and a coolant pump on outputs.
 inline constexpr unsigned kSpindle = 0;
 inline constexpr unsigned kCoolant = 1;
 inline machine::Machine first_machine_with_outputs() {
@@ -37,7 +37,7 @@ inline machine::Machine first_machine_with_outputs() {
 
 class CardSession {
  public:
-  // The machine stands homed at 0 in all axes, in the default world where that is asked for.
+  // The machine is homed and at 0 in all axes. `in_world`: with the default world behind the pins.
   CardSession(sim::EngineKind kind, const machine::Machine& machine, bool in_world = false)
       : engine_(make(kind, in_world)), settings_(machine, "") {
     engine_->set_sink(&outputs);
@@ -57,7 +57,7 @@ class CardSession {
 
   sim::Engine& engine() { return *engine_; }
   void put(const std::string& bytes) { controller_->receive(bytes); }
-  // Until nothing is under way, or 10^5 motions and waits have passed.
+  // Works until nothing is in progress; throws after 10^5 turns.
   void settle() {
     for (unsigned n = 0, quiet = 0; quiet < 3; ++n) {
       if (n > 100'000) throw std::logic_error("the controller does not settle");
@@ -65,14 +65,15 @@ class CardSession {
       quiet = controller_->idle() ? quiet + 1 : 0;
     }
   }
-  // All that is said until nothing is under way.
+  // Sends a line. Returns all answers until nothing is in progress.
   std::string ask(const std::string& line) {
     came_.clear();
     put(line + "\n");
     settle();
     return came_;
   }
-  // Sends bytes when an axis has made so many pulses, up or down, within a motion; `act` is done before that.
+  // Sends a line. During its motion, after an axis has made `pulses` pulses in either direction, calls `act` and then
+  // sends `bytes`.
   std::string ask_and_then(const std::string& line, unsigned axis, std::int64_t pulses, const std::string& bytes,
                            const std::function<void()>& act = nullptr) {
     const std::int64_t begin = engine_->positions()[axis];
@@ -88,7 +89,7 @@ class CardSession {
     EXPECT_TRUE(done) << "no axis has come so far";
     return said;
   }
-  // Levels at the pins, bit n: output n.
+  // Levels at the pins; bit n: output n.
   unsigned levels() const {
     unsigned levels = 0;
     for (unsigned n = 0; n < outputs.outputs().size(); ++n) levels |= outputs.outputs()[n].level ? 1U << n : 0U;

@@ -1,4 +1,4 @@
-// Spindle and coolant at the card's pins, where a sender's user or the card ends the motion.
+// Spindle and coolant at the card's pins, when the user of a sender, or the card, ends the motion.
 #include "card_session.hpp"
 
 namespace trammel::test {
@@ -9,7 +9,7 @@ using ::testing::HasSubstr;
 
 constexpr unsigned kBoth = 1U << kSpindle | 1U << kCoolant;
 constexpr unsigned kX = 0;
-constexpr std::int64_t kMm = 80;  // pulses
+constexpr std::int64_t kMm = 80;  // pulses per mm
 
 class PinsOfOutputs : public ::testing::TestWithParam<sim::EngineKind> {
  protected:
@@ -21,7 +21,7 @@ class PinsOfOutputs : public ::testing::TestWithParam<sim::EngineKind> {
     EXPECT_EQ(session->levels(), kBoth);
     return session;
   }
-  // Off at the pins, once each, and known to be off.
+  // The outputs are off at the pins, were switched off once each, and are reported as off.
   void expect_off(CardSession& session) {
     EXPECT_EQ(session.levels(), 0U);
     for (const unsigned output : {kSpindle, kCoolant}) EXPECT_EQ(session.outputs.outputs()[output].off, 1U) << output;
@@ -59,7 +59,8 @@ TEST_P(PinsOfOutputs, ASoftLimitsAlarmSwitchesThemOff) {
   expect_off(*session);
 }
 
-// The card has a fault then and takes no command: its safe levels hold, and the others wait for $X.
+// The card then has a fault and takes no commands: outputs that the fault switches off are at their safe levels, and
+// the others are switched off by $X.
 TEST_P(PinsOfOutputs, ALimitSwitchesAlarmLeavesThemToTheSafeLevelsUntilTheUnlock) {
   machine::Machine machine = first_machine_with_outputs();
   machine.outputs.off_at_cause = 1U << kSpindle;

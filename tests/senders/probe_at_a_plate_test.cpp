@@ -1,4 +1,4 @@
-// Probing by a sender at a simulated machine: the default world's plate, which Z touches at -20 mm.
+// Probing by a sender on a simulated machine: Z touches the default world's plate at -20 mm.
 #include <array>
 
 #include "card_session.hpp"
@@ -10,11 +10,11 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr unsigned kZ = 2;
-constexpr double kPerMm = 80;   // pulses
+constexpr double kPerMm = 80;   // pulses per mm
 constexpr double kPlate = -20;  // mm
-constexpr double kLag = 0.05;   // mm, by which a carriage is behind its pulses at 20 mm/s
+constexpr double kLag = 0.05;   // mm by which a carriage lags behind its pulses at 20 mm/s
 
-// X, Y and Z of "[PRB:0.000,0.000,-20.025:1]", and the digit at its end.
+// X, Y and Z of "[PRB:0.000,0.000,-20.025:1]", and its last digit.
 struct Prb {
   std::array<double, 3> at{};
   int tripped = -1;
@@ -53,7 +53,7 @@ TEST_P(ProbeAtAPlate, TellsWhereTheCardWasAtTheEdge) {
   EXPECT_LT(z(), prb.at[kZ] - 1 / kPerMm) << "it stands where its ramp ended";
   EXPECT_THAT(said, Not(HasSubstr("ALARM")));
   EXPECT_THAT(session_.ask("$#"), HasSubstr(said.substr(said.find("[PRB:"), said.find(']') - said.find("[PRB:"))));
-  // And off the plate again: its contact opens 0.0125 mm higher.
+  // The probe leaves the plate again: its contact opens 0.0125 mm higher.
   const Prb off = prb_of(session_.ask("G38.4 Z5 F120"));
   EXPECT_EQ(off.tripped, 1);
   EXPECT_GT(off.at[kZ], kPlate);

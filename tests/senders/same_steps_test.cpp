@@ -1,4 +1,4 @@
-// A program that comes from a sender makes the steps of `trammel run`, in their order.
+// A program from a sender makes the same steps as with `trammel run`, in the same order.
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -57,7 +57,7 @@ TEST(SameSteps, ASenderThatWaitsForEachAnswer) {
   EXPECT_EQ(by_sender(program, "--engine model --fast", 0), by_run(program, "--engine model --fast"));
 }
 
-// Each line is a motion of its own then, which ends at rest.
+// Each line is then its own motion, which ends at rest.
 TEST(SameSteps, ASenderThatIsSlow) {
   const std::string program = mixed_program();
   EXPECT_EQ(by_sender(program, "--engine model --fast", 0, 30ms), by_run(program, "--engine model --fast"));
@@ -68,7 +68,7 @@ TEST(SameSteps, OnTheVerilatedCard) {
   EXPECT_EQ(by_sender(program, "--engine rtl --fast", 126), by_run(program, "--engine model --fast"));
 }
 
-// The card's clock is 100 MHz, and it runs in real time: it holds for want of commands when a line is late.
+// The card runs in real time at 100 MHz. If a line comes too late, it makes an under-run hold.
 TEST(SameSteps, TwentyLinesASecondWithoutAnUnderRun) {
   const int count = std::getenv("TRAMMEL_LONG") != nullptr ? 10000 : 200;
   std::vector<std::string> lines{"G21 G91 G1 F600"};

@@ -1,4 +1,4 @@
-// `trammel grbl` while it runs, and a sender that is connected to it.
+// A running `trammel grbl`, and a sender that is connected to it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class GrblServer {
 
   std::uint16_t port() const { return port_; }
   std::string errors() const { return contents(command_.path("grbl.err")); }
-  // Ends it; what it said.
+  // Ends the server. Returns its standard error.
   std::string end() {
     running_.signal(SIGTERM);
     const std::optional<int> status = running_.wait();
@@ -46,7 +46,7 @@ class GrblServer {
   std::uint16_t port_ = 0;
 };
 
-// "path: 10 steps, of axes and directions 0123456789abcdef": these two.
+// The number of steps and the identity in a line such as "path: 10 steps, of axes and directions 0123456789abcdef".
 inline std::string path_of(const std::string& said) {
   const std::size_t count = said.rfind("path: ");
   const std::size_t order = said.rfind("of axes and directions ");
@@ -66,7 +66,7 @@ class Sender {
   void put(const std::string& bytes) {
     stream_->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   }
-  // The next line that is not empty; "" after 20 s.
+  // The next line that is not empty; "" after `longest`.
   std::string line(std::chrono::milliseconds longest = 20s) {
     const auto end = std::chrono::steady_clock::now() + longest;
     for (;;) {
@@ -83,7 +83,7 @@ class Sender {
       came_.append(bytes, bytes + count);
     }
   }
-  // Lines until one begins so.
+  // Reads lines until one starts with `begin`.
   std::string until(const std::string& begin, std::chrono::milliseconds longest = 20s) {
     const auto end = std::chrono::steady_clock::now() + longest;
     while (std::chrono::steady_clock::now() < end) {
@@ -92,7 +92,7 @@ class Sender {
     }
     return "no line " + begin;
   }
-  // A line and its answer, ok or error.
+  // Sends a line. Returns its answer: ok, error or alarm.
   std::string ask(const std::string& text) {
     put(text + "\n");
     for (;;) {
@@ -101,7 +101,7 @@ class Sender {
       told_.push_back(next);
     }
   }
-  // Feedback before answers so far.
+  // Lines that came before the answers to ask() so far.
   const std::vector<std::string>& told() const { return told_; }
   std::string report() {
     put("?");
@@ -122,7 +122,7 @@ class Sender {
     for (; n != 0; --n) text.erase(0, text.find(',') + 1);
     return std::stod(text);
   }
-  // Whether the state comes within 30 s.
+  // Waits at most 30 s for a state. Returns whether it came.
   bool await_state(const std::string& wanted) {
     return eventually([&] {
       if (state() == wanted) return true;
@@ -131,8 +131,8 @@ class Sender {
     });
   }
 
-  // As senders do: by counting the bytes that wait (126 at the most), or a line after each answer. Gives back the
-  // answers that are not ok.
+  // Sends lines as senders do: counts the bytes that wait (126 at most), or sends a line after each answer. Returns the
+  // answers other than ok.
   std::vector<std::string> stream(const std::vector<std::string>& lines, std::size_t window,
                                   std::chrono::milliseconds pause = 0ms) {
     std::vector<std::string> wrong;

@@ -37,7 +37,7 @@ class ClientsTest : public ::testing::Test {
   StreamLink::Open opener() {
     return [this] { return std::make_unique<ClientEnd>(*server_, listener_); };
   }
-  // What a client reads that has sent this.
+  // Reply that a client reads after it has sent `text`.
   std::string answer_to(const std::string& text) {
     ClientEnd client(*server_, listener_);
     client.write(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());

@@ -1,4 +1,4 @@
-// What the server makes of clients, and what clients say of servers that refuse them. One thread; no sockets.
+// How the server treats clients, and what clients report about servers that refuse them. One thread; no sockets.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -48,7 +48,7 @@ TEST_F(ClientsTest, Hellos) {
   EXPECT_EQ(server_->counts().refused, 6U);
 }
 
-// What is lost for good is found in that time once, however often the driver asks again.
+// The time for reconnecting passes only once after a permanent loss, however often the driver asks again.
 TEST_F(ClientsTest, AServerThatIsGone) {
   start(settings());
   bool gone = false;
@@ -83,7 +83,7 @@ TEST_F(ClientsTest, OneAtATimeMovesTheCard) {
   EXPECT_EQ(engine_->read(reg::kHold), 0U) << "the first one is still there";
 }
 
-// A host that is cut off or stopped leaves a connection that stands. Its watchdog tells it from one that only is
+// A host that is cut off or stopped leaves an open connection. Its watchdog distinguishes it from a client that is only
 // silent.
 TEST_F(ClientsTest, WhoseWatchdogHasExpiredLosesItsPlace) {
   start(settings());
@@ -109,7 +109,7 @@ TEST_F(ClientsTest, WhoseWatchdogHasExpiredLosesItsPlace) {
   driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
 }
 
-// Who comes next with the token finds the hold at once, and who has left it; a take-over ends it.
+// The next client with the token learns of the hold at once, and which client left it. A take-over ends the hold.
 TEST_F(ClientsTest, ANewClientIsToldWhoHasLeftTheCardInItsHold) {
   start(settings());
   {
@@ -181,8 +181,8 @@ TEST_F(ClientsTest, SilenceAndRubbish) {
   EXPECT_THAT(notes_, HasSubstr("no frame in 65536 bytes"));
 }
 
-// Connections that are cut at any byte, there and back, are made anew; the card was made to hold each time, and every
-// access was made once.
+// Connections are cut at any byte, in both directions, and made again. The card was put into a hold each time, and
+// every access was made once.
 TEST_F(ClientsTest, CutConnectionsAreMadeAnewAndNothingRunsTwice) {
   start(settings());
   std::mt19937_64 random(7);
@@ -216,11 +216,11 @@ TEST_F(ClientsTest, CutConnectionsAreMadeAnewAndNothingRunsTwice) {
   EXPECT_TRUE(stream.finish().ended);
   EXPECT_EQ(engine_->positions()[0], 6000);
   EXPECT_GE(link.reconnections(), 20U);
-  // A cut in the hello's answer is noticed when nobody may have moved yet.
+  // A cut in the answer to the hello can come before any client was allowed to move: then there is no hold.
   EXPECT_LE(server_->counts().holds, link.reconnections());
 }
 
-// Between a client and the server: damages what the test wants damaged, and keeps to the time of a read.
+// Between a client and the server: damages bytes as the test requests, and respects the time limit of a read.
 class Relay final : public transport::ByteStream {
  public:
   using Damage = std::function<void(std::vector<std::uint8_t>&, bool to_server)>;
@@ -252,8 +252,8 @@ class Relay final : public transport::ByteStream {
   Damage damage_;
 };
 
-// Each byte of a wait and of its answer, damaged once: the wait is sent again, on the same connection, and takes its
-// time.
+// Each byte of a wait and of its answer is damaged once: the wait is sent again on the same connection, and takes its
+// full time.
 TEST_F(ClientsTest, ADamagedWaitIsSentAgain) {
   start(settings());
   bool to_server = true;
@@ -284,7 +284,7 @@ TEST_F(ClientsTest, ADamagedWaitIsSentAgain) {
   EXPECT_EQ(engine_->read(reg::kHold), 0U);
 }
 
-// Somebody else's stream.
+// Uses a stream that another object owns.
 class Borrowed final : public transport::ByteStream {
  public:
   explicit Borrowed(transport::ByteStream& stream) : stream_(stream) {}
@@ -298,7 +298,7 @@ class Borrowed final : public transport::ByteStream {
   transport::ByteStream& stream_;
 };
 
-// A terminal's client may follow another one before the server has seen that one go.
+// The next client on a terminal may come before the server has seen that the one before it has left.
 TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
   start(settings());
   ClientEnd terminal(*server_, listener_);
@@ -314,7 +314,7 @@ TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
   EXPECT_EQ(engine_->read(reg::kHold), 1U);
   engine_->write(reg::kHold, 0);
   EXPECT_EQ(say("trammel 1 secret\n").rfind("trammel 1 motion", 0), 0U);
-  // A serial line's beginning: a card's client without a hello.
+  // The start of a serial line: a client of the card without a hello.
   say("U\xC0");
   EXPECT_EQ(engine_->read(reg::kHold), 1U);
   EXPECT_EQ(server_->counts().holds, 2U);
@@ -324,7 +324,7 @@ TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
   EXPECT_EQ(bus.transfer(&access, 1), 0U) << "it has not inherited what it may do";
 }
 
-// 10 bits a byte in card time, there and back, and no more.
+// 10 bits per byte in card time, in each direction, and not more.
 TEST_F(ClientsTest, BaudIsKeptInCardTime) {
   constexpr std::uint32_t kBaud = 115'200;
   start(settings(kBaud));
@@ -335,13 +335,14 @@ TEST_F(ClientsTest, BaudIsKeptInCardTime) {
   const std::uint64_t before = engine_->cycles();
   for (int i = 0; i < 100; ++i) ASSERT_EQ(bus.transfer(reads.data(), reads.size()), reads.size());
   const auto clocks = static_cast<double>(engine_->cycles() - before);
-  // A request is 14 bytes and what is stuffed, its reply 33 and 40: state words that are C0 or DB are not there.
+  // Before stuffing, a request is 14 bytes and its reply 33 and 40. It is assumed that no word of state holds a C0 or
+  // DB, which would be stuffed.
   const double least = 100 * (14 + 28 + 4 + 1 + 40) * 10.0 * kClock / kBaud;
   EXPECT_GE(clocks, least);
   EXPECT_LE(clocks, least * 1.1);
 }
 
-// No faster than life; how much slower is the machine's.
+// The card is not faster than real time. How much slower it may be depends on the machine.
 TEST_F(ClientsTest, RealTimeIsNoFasterThanLife) {
   Settings real = settings();
   real.real_time = true;
@@ -354,14 +355,14 @@ TEST_F(ClientsTest, RealTimeIsNoFasterThanLife) {
     ASSERT_LE(static_cast<double>(engine_->cycles()), life.count() * kClock);
   }
   EXPECT_GE(engine_->cycles(), 10'000U);
-  // And a client's wait is the card's time.
+  // A client's wait passes in the card's time.
   StreamLink link(opener(), StreamLink::Hello{});
   const std::uint64_t before = engine_->cycles();
   link.sleep(50ms);
   EXPECT_GE(engine_->cycles() - before, 50'000U);
 }
 
-// What a client has left of a request does not meet the next one's.
+// The rest of one client's request is not joined with the next client's request.
 TEST_F(ClientsTest, ANewClientIsANewEpoch) {
   start(settings());
   frames::Request ask;

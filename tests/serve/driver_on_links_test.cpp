@@ -1,5 +1,5 @@
-// The same tests of the driver on a simulated card in this process, and on one that a server has behind TCP and behind
-// a pseudo-terminal.
+// The same tests of the driver on a simulated card in this process, and on cards behind a server with TCP and with a
+// pseudo-terminal.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -29,7 +29,7 @@ namespace field = card_map::field;
 
 enum class Place { kHere, kTcp, kTerminal };
 
-// A card, and the way to it.
+// A card and the connection to it.
 class Bench {
  public:
   explicit Bench(Place place) {
@@ -50,7 +50,7 @@ class Bench {
   driver::Bus& bus() { return connection_ ? connection_->bus() : *engine_; }
   std::string url() const { return listener_->url(); }
   void disconnect() { connection_.reset(); }
-  // The card's positions as the simulation has them, at the end of all use.
+  // The card's positions in the simulation, after all clients have disconnected.
   std::vector<std::int64_t> end() {
     connection_.reset();
     ended_ = true;
@@ -87,7 +87,7 @@ driver::LineCommand line_of(std::uint64_t ticks, std::int64_t pulses) {
 driver::FeedCommand feed_of(std::uint64_t ticks) {
   driver::FeedCommand feed;
   feed.ticks = ticks;
-  feed.rate = std::uint64_t{1} << 60;  // a tick in 16 clocks
+  feed.rate = std::uint64_t{1} << 60;  // one tick per 16 clocks
   feed.floor = 1;
   return feed;
 }
@@ -200,7 +200,7 @@ TEST_P(DriverOnLinks, ProgramsOfSeveralConnections) {
     run::Runner runner([&] { return std::make_unique<gcode::TextLines>(text, "p.ngc"); }, machine,
                        planner::limits_of(card.identification()));
     runner.plan();
-    runner.run(card);  // throws unless the card has counted what the plan says
+    runner.run(card);  // throws unless the card's counts equal the plan's
   }
   EXPECT_EQ(bench_.end(), (std::vector<std::int64_t>{240, 160, 0, 0}));
 }
@@ -210,7 +210,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(place.param == Place::kHere ? "Here" : place.param == Place::kTcp ? "Tcp" : "Terminal");
     });
 
-// A TCP port in front of a server's, that loses each wait.
+// A TCP port in front of a server's port. It loses each wait.
 class LossyRelay {
  public:
   explicit LossyRelay(const std::string& server)
@@ -247,7 +247,7 @@ class LossyRelay {
   std::thread thread_;
 };
 
-// Twice the time that the URL gives, not the driver's own.
+// A wait is limited to twice the timeout in the URL, and not by the driver's own limit.
 TEST(StreamLinks, AWaitKeepsToTheTimeoutOfTheUrl) {
   Bench bench(Place::kTcp);
   bench.disconnect();
@@ -260,7 +260,7 @@ TEST(StreamLinks, AWaitKeepsToTheTimeoutOfTheUrl) {
   EXPECT_LT(waited, 5s);
 }
 
-// A serial line without a hello, as a card has it: a break, 55, frames. The server lets it read.
+// A serial line without a hello, as for a card: a break, 55, frames. The server allows reading.
 TEST(SerialLine, ReadsWithoutAHello) {
   const auto engine = sim::make_model_engine(sim::EngineOptions{3, 2'000'000, false});
   const auto listener = transport::open_pseudo_terminal();
@@ -294,7 +294,7 @@ std::string why_not(const std::string& url) {
   return "";
 }
 
-// Says hello, and is no card: `then` is what it makes of what comes behind.
+// Sends a greeting, but is not a card. `then` handles the client after that.
 class FalseServer {
  public:
   FalseServer(std::string greeting, std::function<void(transport::ByteStream&)> then)
@@ -332,8 +332,8 @@ class FalseServer {
   std::thread thread_;
 };
 
-// Once is enough: what does not answer the first frame is no card. With as many tries as a card under way gets it would
-// take two minutes.
+// One try is enough: a peer that does not answer the first frame is not a card. With as many tries as a known card
+// gets, the test would take two minutes.
 TEST(NoCard, AServerWithoutOne) {
   const std::string rubbish(4096, 'x');
   for (const bool loud : {false, true}) {
@@ -360,7 +360,7 @@ TEST(NoCard, SaysWhatIsThere) {
   EXPECT_THAT(why_not("serial:/dev/no-such-device"), HasSubstr("no such device"));
   EXPECT_THAT(why_not("serial:/dev/null"), HasSubstr("cannot open it as a serial line"));
   EXPECT_THAT(why_not("mmap:/dev/no-such-device"), HasSubstr("cannot open it"));
-  // Something that listens and says nothing; something that knows nothing of cards.
+  // A listener that says nothing, and a server that knows nothing of cards.
   const auto listener = transport::listen_tcp("127.0.0.1", 0);
   EXPECT_THAT(why_not(listener->url() + "?hello=no&timeout=20"), HasSubstr("no card answers"));
   std::thread other([&] {
@@ -377,7 +377,7 @@ TEST(NoCard, SaysWhatIsThere) {
     }
     std::this_thread::sleep_for(50ms);
   });
-  // The connections of before wait in the listener's queue.
+  // Earlier connections still wait in the listener's queue.
   while (listener->accept()) {
   }
   EXPECT_THAT(why_not(listener->url()), HasSubstr("what answers is no `trammel serve`"));

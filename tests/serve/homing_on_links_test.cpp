@@ -1,6 +1,6 @@
-// Homing behind a link: slow, late, bad, and cut in mid search. The edge is the one that the card has captured,
-// whatever the link does; without a host the card stops on a ramp. The links in memory have the card's time, so that
-// each run is the same; the socket and the terminal have a server's.
+// Homing behind a link that is slow, late or bad, or is cut during the search. The edge is always the one that the card
+// has captured. Without a host the card stops on a ramp. The links in memory use the card's time, so that each run is
+// the same; the socket and the terminal use a server's time.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -44,11 +44,11 @@ struct CardInDefaultWorld {
   world::EngineInWorld engine{sim::make_model_engine(sim::EngineOptions{4, kHomeClock, false}), world};
 };
 
-// What a link does to frames on their way.
+// Disturbances of frames by a link.
 struct LinkFaults {
-  std::chrono::nanoseconds byte = 0ns;     // on the line
-  std::chrono::nanoseconds latency = 0ns;  // each way
-  unsigned one_in = 0;                     // frames that are spoiled; 0: none
+  std::chrono::nanoseconds byte = 0ns;     // duration of a byte on the line
+  std::chrono::nanoseconds latency = 0ns;  // in each direction
+  unsigned one_in = 0;                     // one frame in so many is spoiled; 0: none
 };
 
 // A stream of bytes to the card, in the card's time.
@@ -101,7 +101,7 @@ class LinkInCardTime final : public driver::ByteLink {
 
  private:
   bool is_cut() { return cut_now_ = cut_now_ || (cut_ && cut_()); }
-  // A byte is lost, or has another bit.
+  // Removes a byte or changes a bit of it.
   void spoil(frames::Bytes& bytes) {
     if (faults_.one_in == 0 || bytes.empty() || random_() % faults_.one_in != 0) return;
     ++spoiled_;
@@ -129,8 +129,8 @@ struct Homed {
   driver::CardPlace place;
 };
 
-// X, Y and Z, as `trammel home` does it.
-// The watchdog (0: off) is kept by the host's clock, which passes slower than the card's here: no test of it.
+// Homes X, Y and Z as `trammel home` does. `silence`: the watchdog's time, 0: off. The host refreshes the watchdog by
+// its own clock, which is slower than the card's here, so these tests do not judge the refreshing.
 Homed home_all(driver::Bus& bus, std::chrono::nanoseconds silence = 2s) {
   driver::Card card = driver::Card::open(bus);
   run::configure(card, first_machine());
@@ -150,7 +150,7 @@ const Homed& homed_without_link() {
   return homed;
 }
 
-// Each axis's edge is that of a card without a link, and so is its machine zero.
+// Each axis's edge and machine zero equal those of a card without a link.
 void expect_same_edges(const Homed& homed) {
   const Homed& wanted = homed_without_link();
   ASSERT_EQ(homed.axes.size(), 3U);
@@ -170,7 +170,7 @@ void expect_no_lost_steps(const world::World& world) {
 struct Tried {
   Homed homed;
   unsigned spoiled;
-  double seconds;  // of the card
+  double seconds;  // card time
 };
 
 Tried home_behind(const LinkFaults& faults) {
@@ -207,8 +207,8 @@ TEST(HomingOnLinks, ALinkThatSpoilsFrames) {
   fmt::print("{} frames spoiled\n", tried.spoiled);
 }
 
-// On the ramp of an under-run hold, and then the watchdog latches that the host is silent. The axis does not count as
-// homed.
+// The card stops on the ramp of an under-run hold, and then the watchdog latches that the host is silent. The axis does
+// not count as homed.
 void expect_stop_without_host(std::size_t axis, double millimetres) {
   CardInDefaultWorld here;
   LinkInCardTime link(here.engine, {86'806ns, 0ns, 0});
@@ -217,7 +217,7 @@ void expect_stop_without_host(std::size_t axis, double millimetres) {
   link.cut_when([&] { return std::abs(carriage.position()) > millimetres / kHomePulse; });
   EXPECT_THROW(home_all(bus), driver::LinkError);
   ASSERT_TRUE(here.engine.read(card_map::reg::kStatus) & field::kStatusBusy) << "it is searching";
-  // What was sent ends in an under-run hold, which is a ramp, long before the watchdog.
+  // The commands sent so far end in an under-run hold, which is a ramp, long before the watchdog expires.
   here.engine.sleep(500ms);
   const std::uint32_t status = here.engine.read(card_map::reg::kStatus);
   EXPECT_TRUE(status & field::kStatusUnderrun);
@@ -241,7 +241,7 @@ void expect_stop_without_host(std::size_t axis, double millimetres) {
   expect_no_lost_steps(here.world);
   here.engine.sleep(1s);
   EXPECT_EQ(card.read_snapshot().position, end.position) << "nothing moves by itself";
-  // And the next host homes it.
+  // The next host homes the axis.
   card.clear_faults();
   const Homed homed = home_all(here.engine);
   EXPECT_EQ(homed.place.bits.homed, 7);
@@ -253,7 +253,7 @@ TEST(HomingOnLinks, ALinkThatIsCutInTheSearchLeavesACardThatStops) {
   expect_stop_without_host(0, 30);
 }
 
-// A server of such a card, in a thread of its own.
+// A server of such a card, in its own thread.
 class ServedInWorld {
  public:
   explicit ServedInWorld(std::unique_ptr<transport::Listener> listener) : listener_(std::move(listener)) {

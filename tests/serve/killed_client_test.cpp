@@ -1,4 +1,4 @@
-// Clients of the server that die at any byte: the card stops on the path, and whoever comes next knows where.
+// Clients of the server that die at any byte: the card stops on the path, and the next client learns its position.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace trammel::serve {
 namespace {
 
 namespace reg = card_map::reg;
-constexpr std::uint32_t kClock = 100'000;  // what counts is bytes and path, and a slow clock is quick to simulate
+constexpr std::uint32_t kClock = 100'000;  // a slow clock is quick to simulate; only bytes and the path matter here
 constexpr const char* kToken = "secret";
 
 // Lines, an arc, a helix, a dwell and corners that stop.
@@ -48,12 +48,12 @@ class Steps final : public driver::StepSink {
   std::vector<driver::PathStep> path;
 };
 
-// A card, its server, and clients one after the other.
+// A card, its server, and clients one after another.
 class Bench {
  public:
   explicit Bench(std::uint32_t baud = 0) : server(*engine, listener, settings(baud)) { engine->set_sink(&steps); }
 
-  // Runs the program as a client that lives for so many bytes.
+  // Runs the program as a client that is killed after `life` bytes.
   run::Outcome run(const std::string& text, std::optional<std::uint64_t> life = std::nullopt,
                    const run::RunSettings& there = {}) {
     transport::StreamLink link([&] { return std::make_unique<test::ClientEnd>(server, listener, life); },
@@ -65,7 +65,7 @@ class Bench {
     runner.plan();
     return runner.run(card);
   }
-  // The next client: what it knows of the position, having stopped what its predecessor left.
+  // The next client stops the card and returns the position that it reads.
   driver::Snapshot stop() {
     transport::StreamLink link([&] { return std::make_unique<test::ClientEnd>(server, listener); },
                                transport::StreamLink::Hello{kToken});
@@ -119,7 +119,7 @@ struct Whole {
   std::uint64_t bytes = 0;
 };
 
-// Whether it died while something moved.
+// Kills a client after `life` bytes. Counts in `moving` if the card moved on after that.
 void kill_one(const Whole& whole, std::uint32_t baud, std::uint64_t life, bool go_home, unsigned& moving) {
   Bench bench(baud);
   EXPECT_THROW(bench.run(program(), life), test::Killed);
@@ -129,7 +129,7 @@ void kill_one(const Whole& whole, std::uint32_t baud, std::uint64_t life, bool g
   EXPECT_FALSE(bench.server.has_client());
   EXPECT_LE(bench.engine->cycles() - died, 5'200U) << "one turn";
   EXPECT_EQ(bench.engine->read(reg::kHold), bench.server.counts().holds) << "by a client that could move";
-  // Without anybody the ramp ends, and nothing moves any more.
+  // Without a client the ramp ends, and then nothing moves.
   for (int turns = 0; turns < 400 && bench.moves(); ++turns) bench.server.turn();
   const std::size_t at_rest = bench.steps.path.size();
   bench.engine->wait(kClock / 10);
@@ -165,12 +165,12 @@ void kill(std::uint32_t baud, unsigned times, unsigned seed) {
   EXPECT_GT(moving, times / 20) << "or nothing was stopped";
 }
 
-// A thousand in all, or a quarter of it.
+// With TRAMMEL_LONG all kills, a thousand in total; otherwise a quarter of them.
 unsigned times(unsigned all) { return std::getenv("TRAMMEL_LONG") != nullptr ? all : all / 4; }
 
 TEST(KilledClient, TheCardStopsOnThePathAndThePositionIsKnown) { kill(0, times(700), 1); }
 
-// The line is slower than the motion, so that it is often under way when the client dies.
+// The line is slower than the motion, so the client often dies while a frame is on its way.
 TEST(KilledClient, OnASlowLine) { kill(115'200, times(300), 2); }
 
 }  // namespace

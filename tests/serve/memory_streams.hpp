@@ -1,5 +1,5 @@
-// A server and its clients in one thread: a client that waits lets the server take its turns. So what happens does not
-// depend on the host's time, and a client can be killed at any byte.
+// A server and its clients in one thread: a client that waits lets the server take its turns. The results therefore do
+// not depend on the host's time, and a client can be killed at any byte.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct Pipe {
   bool server_open = true;
 };
 
-// Thrown out of a client that is killed; nothing of the driver catches it.
+// Thrown out of a client that is killed. The driver does not catch it.
 struct Killed {};
 
 class MemoryListener final : public transport::Listener {
@@ -59,12 +59,12 @@ class MemoryListener final : public transport::Listener {
   std::shared_ptr<Pipe> arriving_;
 };
 
-// The client's end.
+// The client's end of a connection.
 class ClientEnd final : public transport::ByteStream {
  public:
-  // What comes at the end of its life.
+  // Event at the end of a client's life.
   enum class End { kKilled, kCut };
-  // `life`: bytes that it sends and reads before it is killed, or its connection is cut.
+  // `life`: number of bytes that the client sends and reads before it is killed, or before its connection is cut.
   ClientEnd(serve::CardServer& server, MemoryListener& listener, std::optional<std::uint64_t> life = std::nullopt,
             End end = End::kKilled)
       : server_(server), life_(life), end_(end) {

@@ -1,4 +1,4 @@
-// Clients without the token: they read beside the one that moves the card, and write nothing that moves.
+// Clients without the token: they read while another client moves the card, and cannot write anything that moves it.
 #include <gmock/gmock.h>
 
 #include <optional>
@@ -22,7 +22,7 @@ namespace reg = card_map::reg;
 
 class ReadersTest : public test::ClientsTest {};
 
-// Readers come before who moves the card and beside it, and take nothing from it: neither its place nor its requests.
+// Readers come before and after the client that moves the card. They take neither its place nor its requests.
 TEST_F(ReadersTest, ReadersReadBesideWhoMovesTheCard) {
   start(settings());
   StreamLink early(opener(), StreamLink::Hello{});
@@ -46,7 +46,8 @@ TEST_F(ReadersTest, ReadersReadBesideWhoMovesTheCard) {
   EXPECT_EQ(server_->counts().holds, 0U);
 }
 
-// As fast as it can: the time is that of who moves the card, and a reader's wait ends though that time stands.
+// Without real time, only the client that moves the card advances the card's time. A reader's wait ends although that
+// time does not advance.
 TEST_F(ReadersTest, AReadersWaitDoesNotPassTheMoversTime) {
   start(settings());
   StreamLink moving(opener(), StreamLink::Hello{"secret"});
@@ -61,7 +62,7 @@ TEST_F(ReadersTest, AReadersWaitDoesNotPassTheMoversTime) {
   EXPECT_EQ(engine_->cycles(), before);
 }
 
-// A reader's connection is made anew beside others, and its card was not reset.
+// A reader reconnects beside other clients, and sees that its card was not reset.
 TEST_F(ReadersTest, AReaderThatWasCutReadsOn) {
   start(settings());
   std::optional<std::uint64_t> life = 3000;
@@ -106,7 +107,7 @@ TEST_F(ReadersTest, WithoutTheTokenNothingIsWrittenThatMoves) {
     EXPECT_THROW(card.abort(), driver::RefusedError);
     EXPECT_THROW(card.configure_axis(0, {}), driver::RefusedError);
     EXPECT_THROW(driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms)), driver::RefusedError);
-    // Every register, whatever is written.
+    // Every register, for every value.
     for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4) {
       if (address == reg::kRefusal) continue;
       const bool control = address == reg::kControl;

@@ -1,5 +1,5 @@
-// Who may move the card on a pseudo-terminal. The clients open the terminal themselves, and the server takes its turns
-// only where a client waits: so what it sees late is the same on every machine.
+// The right to move the card on a pseudo-terminal. The clients open the terminal themselves, and the server takes its
+// turns only while a client waits, so the order of events is the same on every machine.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -71,7 +71,7 @@ class TerminalTest : public ::testing::Test {
   CardServer server_{*engine_, *listener_, settings()};
 };
 
-// The next one opens the terminal before the server has looked: it comes without the rights, also without a hello.
+// The next client opens the terminal before the server has noticed the close. It gets no rights, also without a hello.
 TEST_F(TerminalTest, RightsEndWithTheClose) {
   {
     StreamLink owner(opener(), StreamLink::Hello{"secret"});
@@ -86,7 +86,7 @@ TEST_F(TerminalTest, RightsEndWithTheClose) {
   EXPECT_EQ(server_.counts().holds, 1U);
 }
 
-// Another program that opens the terminal, finds it in use and closes it again takes nothing from the owner.
+// Another program that opens the terminal, finds it in use and closes it again does not change the owner's rights.
 TEST_F(TerminalTest, AnotherOneThatOnlyLooksChangesNothing) {
   StreamLink owner(opener(), StreamLink::Hello{"secret"});
   driver::FrameBus bus(owner);

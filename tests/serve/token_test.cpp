@@ -1,4 +1,4 @@
-// Tokens that a server makes, and those that a user may give it.
+// Tokens that a server generates, and tokens that a user may choose.
 #include <gtest/gtest.h>
 
 #include <string>

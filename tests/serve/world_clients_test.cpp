@@ -1,4 +1,4 @@
-// Clients at the machine behind the card, beside the one that moves the card.
+// Clients of the world (the machine behind the card), together with the client that moves the card.
 #include <gmock/gmock.h>
 
 #include <optional>
@@ -66,7 +66,7 @@ TEST_F(WorldClientsTest, ReadTheMachineAndPressItsButtons) {
   EXPECT_THAT(client->request("count"), HasSubstr(R"("path":{"steps":3)"));
 }
 
-// By then the contact is at rest, also where nobody else lets the card's time go on.
+// By then the contact has settled, also when no other client advances the card's time.
 TEST_F(WorldClientsTest, APressIsAnsweredTwentyMillisecondsOfTheCardLater) {
   const auto client = at_world();
   const std::uint64_t before = engine_->cycles();
@@ -96,7 +96,7 @@ TEST_F(WorldClientsTest, WhatIsNoRequestIsNamedAndTheNextOneIsTaken) {
   EXPECT_THAT(client->request("state"), StartsWith("{"));
 }
 
-// Its answers and its motion are the same as without.
+// The answers and the motion are the same as for one client alone.
 TEST_F(WorldClientsTest, BesideTheOneThatMovesTheCard) {
   StreamLink moving(opener(), StreamLink::Hello{"secret"});
   driver::FrameBus bus(moving);
@@ -153,7 +153,7 @@ TEST_F(WorldClientsTest, RubbishAndCrowdsAreSentAway) {
   EXPECT_THAT(error_of<driver::LinkError>([&] { at_world(); }), HasSubstr("as many clients are at the machine"));
   clients.pop_back();
   EXPECT_THAT(at_world()->request("state"), StartsWith("{"));
-  // They take no place of readers.
+  // Clients of the world do not use up the places for readers.
   const StreamLink reading(opener(), StreamLink::Hello{});
   EXPECT_FALSE(reading.may_move());
 }

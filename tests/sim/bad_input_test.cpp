@@ -1,6 +1,6 @@
-// What a host may send wrong, over the bus of both engines: refused, clamped or a fault as the page says
-// (docs/reference/behaviour.md), latched with reason and number, the position intact, and the card of use afterwards.
-// Its driver says the same before it sends.
+// Wrong data from a host, over the bus of both engines. It is refused, clamped or a fault, as
+// docs/reference/behaviour.md says. Reason and number are latched, the position stays intact, and the card remains
+// usable. The driver refuses the same data before it sends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ using driver::Command;
 using Words = std::vector<std::uint32_t>;
 
 constexpr std::uint64_t kOne = std::uint64_t{1} << 40;  // a pulse
-constexpr std::int64_t kPulses = 5;                     // of the path before what is wrong
+constexpr std::int64_t kPulses = 5;                     // pulses of the path before the wrong data
 constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
 constexpr std::uint64_t kTicks = 2000;
 
@@ -37,7 +37,7 @@ driver::FeedCommand feed(std::uint64_t ticks) {
   driver::FeedCommand command;
   command.ticks = ticks;
   command.rate = std::uint64_t{1} << 61;  // a tick in 8 clocks
-  command.floor = 1U << 28;               // in 16
+  command.floor = 1U << 28;               // a tick in 16 clocks
   return command;
 }
 driver::FeedCommand feed(std::int64_t acceleration, std::int64_t jerk) {
@@ -64,16 +64,16 @@ Kind with(Kind command, const std::function<void(Kind&)>& change) {
   return command;
 }
 
-// One thing that is wrong. Sent as the commands before it are, but for what `damage` does to its words.
+// One error. The commands are sent like the good ones before them, except that `damage` changes their words.
 struct Bad {
   const char* name;
   std::vector<Command> commands;
-  std::function<void(Words&)> damage;  // of the first command's words
-  std::optional<Reason> refused;       // with the first command's number
+  std::function<void(Words&)> damage;  // changes the words of the first command
+  std::optional<Reason> refused;       // reported with the number of the first command
   std::uint32_t fault = 0;
-  std::optional<std::int64_t> clamped_to = {};  // it runs, and X ends there
-  std::vector<Command> said = {};               // what the driver is asked to send, where it is not `commands`
-  const char* driver = nullptr;                 // what its ArgumentError says; none: the driver sends it too
+  std::optional<std::int64_t> clamped_to = {};  // the command runs, and X ends there
+  std::vector<Command> said = {};               // commands for the driver, if not `commands`
+  const char* driver = nullptr;                 // part of its ArgumentError; none: the driver sends the commands too
 };
 
 void set_count(Words& words, std::uint64_t count) {
@@ -188,7 +188,7 @@ std::vector<Bad> stream_of_bad_input() {
        {},
        {with<driver::ArcChordCommand>(chord_circle(), [](auto& arc) { arc.path_ticks = kTicks + 1; })},
        "path_ticks = 2001"},
-      // Clamped: all the pulses of the line come, at the floor or at a tick a clock.
+      // Clamped: the line makes all its pulses, at the floor or at one tick per clock.
       {"jerk that reverses the feed",
        {feed(0, -(std::int64_t{1} << 58)), line(kTicks, 4), driver::EndCommand{}},
        {},
@@ -235,7 +235,7 @@ std::unique_ptr<sim::Engine> make(sim::EngineKind kind) {
 
 class BadInput : public testing::TestWithParam<sim::EngineKind> {
  protected:
-  // A card that has made a path of kPulses, and goes on from command number 3.
+  // A card that has made a path of kPulses; its next command number is 3.
   struct Bench {
     explicit Bench(sim::EngineKind kind) : engine(make(kind)), card(driver::Card::open(*engine)), host(*engine) {
       engine->set_sink(&pulses);
@@ -286,7 +286,7 @@ class BadInput : public testing::TestWithParam<sim::EngineKind> {
       EXPECT_EQ(stop.geometry_begun, 3U) << "it was at the path that is wrong, after a path and its end";
     }
   }
-  // The card is as before, at the same place.
+  // The card works as before, from the same position.
   static void expect_usable(Bench& bench) {
     const std::int64_t here = bench.engine->positions()[0];
     bench.card.clear_faults();
@@ -326,7 +326,7 @@ TEST_P(BadInput, IsRefusedClampedOrAFaultWithThePositionIntact) {
     send_raw(bench, bad);
     expect_latched(bench, bad);
     expect_usable(bench);
-    if (bad.damage && bad.said.empty()) continue;  // only a transport does that
+    if (bad.damage && bad.said.empty()) continue;  // only a transport can do this
     Bench other(GetParam());
     expect_said_by_the_driver(other, bad);
   }
@@ -354,8 +354,8 @@ TEST_P(BadInput, AnOverrideOutOfRangeChangesNothing) {
   EXPECT_EQ(bench.engine->positions()[0], 2 * kPulses);
 }
 
-// Beyond the accumulators of the arc engines: whatever curve comes, it ends with its ticks or is a fault, and each of
-// its pulses is counted.
+// Values beyond the accumulators of the arc engines: any curve ends with its ticks or raises a fault, and each of its
+// pulses is counted.
 TEST_P(BadInput, OverflowsOfTheArcEnginesEndAndAreCounted) {
   const driver::Int128 most(driver::Uint128(0x7FFF, ~std::uint64_t{0}));
   for (const bool accumulator : {true, false}) {
@@ -386,8 +386,8 @@ TEST_P(BadInput, OverflowsOfTheArcEnginesEndAndAreCounted) {
   }
 }
 
-// Nothing behind it begins; the edge is latched where the card stands, and what comes behind PROBE_END runs when it is
-// cleared. Inputs are as they were at the pins: input 2 high.
+// Nothing after the PROBE begins. The edge is latched at the present position, and commands behind PROBE_END run after
+// the probe is cleared. Inputs show the levels of the pins: input 2 is high.
 TEST_P(BadInput, AProbeThatIsTrippedAlreadyMovesNothing) {
   Bench bench(GetParam());
   bench.engine->set_inputs(1U << 2);
@@ -410,7 +410,7 @@ TEST_P(BadInput, AProbeThatIsTrippedAlreadyMovesNothing) {
   EXPECT_EQ(bench.engine->positions()[0], 2 * kPulses) << "what stands behind PROBE_END runs";
   EXPECT_EQ(bench.engine->read(reg::kStatus) & field::kStatusProbed, 0U);
   expect_usable(bench);
-  // With the input low it is armed, and its path runs to the end without an edge.
+  // With the input low the probe is armed, and its path runs to the end without an edge.
   bench.engine->set_inputs(0);
   bench.engine->wait(10);
   const std::int64_t here = bench.engine->positions()[0];

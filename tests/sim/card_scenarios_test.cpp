@@ -1,5 +1,5 @@
-// The card over its bus, on both engines: what a program must do, and what must be refused. The RTL engine compares
-// RTL and golden model in every cycle besides.
+// The card over its bus, on both engines: programs that must work, and accesses that must be refused. The RTL engine
+// also compares RTL and golden model in every cycle.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ TEST_P(CardScenario, SaysWhatItIs) {
   EXPECT_EQ(card->read(reg::kFeedRoom), card->read(reg::kFeedDepth));
 }
 
-// Zeng, Zhang & Huang: Lines 1 to 8, v = 5000 lines a second at 10 MHz, so 2000 clocks a line.
+// Zeng, Zhang & Huang: Lines 1 to 8, v = 5000 lines per second at 10 MHz, so 2000 clocks per line.
 TEST_P(CardScenario, MakesThePapersLinesInOneShot) {
   const int lines[][2] = {{20, 40}, {30, 10}, {30, -30}, {-30, 10}, {-30, -30}, {40, 25}, {-39, -36}, {40, 10}};
   std::int64_t x = 0;
@@ -88,7 +88,7 @@ TEST_P(CardScenario, MakesThePapersLinesInOneShot) {
     y += p[1];
     EXPECT_THAT(card->positions(), ElementsAre(x, y, 0, 0));
     ASSERT_EQ(steps.path.size(), static_cast<std::size_t>(std::abs(p[0]) + std::abs(p[1])));
-    // After k clocks |p| k / 2000 pulses, rounded; a line drawn backwards is its mirror image.
+    // After k clocks |p| k / 2000 pulses, rounded; a backward line is the mirror image.
     std::int64_t made[2] = {0, 0};
     for (const driver::PathStep& step : steps.path) {
       const std::int64_t pulses = std::abs(p[step.axis]);
@@ -174,7 +174,7 @@ TEST_P(CardScenario, DwellsInRealTime) {
     ASSERT_EQ(steps.pins.size(), 2U);
     gaps[clocks == 0 ? 0 : 1] = steps.pins[1].cycle - steps.pins[0].cycle;
   }
-  // A dwell of no clocks counts one; the phase of the time base moves the second step by less than its period.
+  // A dwell of 0 clocks lasts one. The phase of the time base moves the second step by less than its period.
   EXPECT_NEAR(static_cast<double>(gaps[1] - gaps[0]), 4999, 4);
 }
 

@@ -1,5 +1,5 @@
-// A path that was dropped in its middle goes on behind a silent piece that runs while the card stands held, by the
-// driver, on both engines.
+// A path that was dropped in its middle continues after a silent piece that runs while the card is held; through the
+// driver's commands, on both engines.
 #include <gtest/gtest.h>
 
 #include <array>

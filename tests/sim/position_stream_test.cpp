@@ -1,4 +1,4 @@
-// Position streaming through the driver on the card in lockstep: in time, late, missing, recovered from.
+// Position streaming through the driver on the card in lockstep: periods in time, late and missing, and the recovery.
 #include "trammel/driver/position_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -45,8 +45,8 @@ TEST(PositionStreamOnRtl, LateMissingAndRecovered) {
   EXPECT_EQ(engine->lockstep_cycles(), engine->cycles());
 }
 
-// Speeds up towards a soft limit until a period is refused, and then falls silent: at rest before the limit, and no
-// more than the last period before it.
+// Accelerates towards a soft limit until a period is refused, and then sends nothing. The axis comes to rest before the
+// limit, by less than two periods at the last speed.
 TEST(PositionStreamOnRtl, ComesToRestBeforeASoftLimit) {
   for (const std::int32_t direction : {1, -1}) {
     sim::SimulationOptions options;
@@ -57,7 +57,7 @@ TEST(PositionStreamOnRtl, ComesToRestBeforeASoftLimit) {
     card.set_soft_limits({driver::SoftRange{-700, 700}});
     PositionStream stream(card);
     PositionStream::Positions target{};
-    std::int64_t speed = 0;  // pulses a period
+    std::int64_t speed = 0;  // pulses per period
     std::string refusal;
     while (refusal.empty()) {
       if (speed < 40) ++speed;
@@ -76,7 +76,7 @@ TEST(PositionStreamOnRtl, ComesToRestBeforeASoftLimit) {
     const std::int64_t end = direction * engine->positions()[0];
     EXPECT_LE(end, 700);
     EXPECT_GT(end, 700 - 2 * speed);
-    // Back is free.
+    // Moving back is allowed.
     target = stream.recover().positions;
     target[0] -= direction * 20 * PositionStream::kPulse;
     EXPECT_NO_THROW(stream.send(target, 1000));

@@ -1,5 +1,5 @@
-// Probing and waiting for an input by the driver, on both engines, with a switch that follows the position: the steps
-// at the pins say where the card was.
+// Probing and waiting for an input through the driver, on both engines. A switch follows the position; the steps at the
+// pins show where the card was.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ class DriverProbe : public testing::TestWithParam<sim::EngineKind> {
     options.clock_hz = kClockHz;
     return sim::make_engine(options);
   }
-  // Looks often, and at each look asks the switch.
+  // Polls often, and updates the switch at each poll.
   driver::StreamOptions options() {
     driver::StreamOptions result;
     result.poll_clocks = 64;
@@ -45,7 +45,7 @@ class DriverProbe : public testing::TestWithParam<sim::EngineKind> {
     };
     return result;
   }
-  // Input 2 rises where axis 0 has come to `at`.
+  // Input 2 rises when axis 0 has reached `at`.
   void switch_at(std::int64_t at) {
     look = [this, at](const driver::StreamProgress&) {
       if (pressed_at == 0 && engine->positions()[0] >= at) {
@@ -85,17 +85,17 @@ TEST_P(DriverProbe, TheEdgeIsLatchedAndTheStopIsARamp) {
   switch_at(500);
   const ProbeResult result = stream.probe(ProbeCommand{2, true}, towards(20'000, 5000));
   EXPECT_EQ(result.outcome, ProbeOutcome::kTripped);
-  // Three clocks from the pin: two flip-flops, and the strobe.
+  // Three clocks from the pin: two flip-flops and the strobe.
   EXPECT_EQ(result.edge.time, pressed_at + 3);
   EXPECT_EQ(result.edge.position[0], steps.position(0, result.edge.time));
   EXPECT_GE(result.edge.position[0], 500);
   EXPECT_TRUE(result.edge.status.path_active);
-  // On the way to rest half the ramp's ticks, a pulse in four.
+  // The way to rest takes the ticks of half the ramp, with a pulse every four ticks.
   EXPECT_NEAR(result.rest.position[0] - result.edge.position[0], kRamp / 2 / kClocksATick / 4, 2);
   EXPECT_EQ(result.rest.position[0], steps.position(0, engine->cycles()));
   EXPECT_FALSE(result.rest.status.busy);
   EXPECT_FALSE(result.rest.status.probed);
-  // Back to the edge: the stream goes on.
+  // Moves back to the edge: the stream can go on.
   const std::int64_t back = result.edge.position[0] - result.rest.position[0];
   stream.send({line(1000, back), feed(1000), driver::EndCommand{}});
   EXPECT_TRUE(stream.finish().ended);
@@ -120,14 +120,14 @@ TEST_P(DriverProbe, Missed) {
   EXPECT_EQ(missed.outcome, ProbeOutcome::kMissed);
   EXPECT_EQ(missed.rest.position[0], 50);
   EXPECT_EQ(missed.edge.time, 0U);
-  // And the next one does not take it for its own.
+  // The next probe does not report this result as its own.
   switch_at(60);
   const ProbeResult found = stream.probe(ProbeCommand{2, true}, towards(20'000, 5000));
   EXPECT_EQ(found.outcome, ProbeOutcome::kTripped);
   EXPECT_EQ(found.edge.position[0], steps.position(0, found.edge.time));
 }
 
-// More than the queues hold: what the host still sends is dropped as well.
+// More paths than the queues hold: commands that the host still sends are dropped too.
 TEST_P(DriverProbe, PathsLongerThanTheQueues) {
   driver::Stream stream(card, options());
   std::vector<Command> paths;
@@ -140,7 +140,7 @@ TEST_P(DriverProbe, PathsLongerThanTheQueues) {
   const ProbeResult result = stream.probe(ProbeCommand{2, true}, paths);
   EXPECT_EQ(result.outcome, ProbeOutcome::kTripped);
   EXPECT_LT(result.rest.position[0], 400);
-  EXPECT_EQ(result.rest.geometry_begun, 1001U);  // paths and PROBE_END, carried out or not
+  EXPECT_EQ(result.rest.geometry_begun, 1001U);  // paths and PROBE_END, executed or dropped
   EXPECT_EQ(result.rest.feed_begun, 1001U);
   stream.send({line(100, 7), feed(100)});
   stream.finish();
@@ -184,7 +184,7 @@ TEST_P(DriverProbe, WaitingForAnInputOutlastsAnyMargin) {
   EXPECT_GT(engine->cycles() - begin, kLate);
   EXPECT_EQ(steps.pins.size(), 20U);
   EXPECT_GT(steps.pins[10].cycle, begin + kLate);
-  // A time-out is no error: the input says.
+  // A time-out is no error; the input shows whether it occurred.
   look = nullptr;
   engine->set_inputs(0);
   const std::uint64_t before = engine->cycles();

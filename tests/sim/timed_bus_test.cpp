@@ -65,7 +65,7 @@ TEST_P(TimedBus, EventsBesideAccessesComeWithinTwentyClocks) {
 
 TEST_P(TimedBus, CarriesSoManyBytesASecondAndNoMore) {
   const std::uint64_t first = engine->cycles();
-  sim::TimedBus bus(*engine, kClock, 8000);  // 500 clocks a word
+  sim::TimedBus bus(*engine, kClock, 8000);  // 500 clocks per word
   std::vector<driver::Access> accesses(100, driver::read_of(reg::kMagic));
   ASSERT_EQ(bus.transfer(accesses.data(), 60), 60U);
   ASSERT_EQ(bus.transfer(accesses.data(), 40), 40U);
@@ -79,7 +79,7 @@ TEST_P(TimedBus, CarriesSoManyBytesASecondAndNoMore) {
 }
 
 TEST_P(TimedBus, FractionsOfAClockAddUp) {
-  engine->wait(700);  // accesses wait that long after reset
+  engine->wait(700);  // after a reset, accesses wait this long
   const std::uint64_t first = engine->cycles();
   sim::TimedBus bus(*engine, kClock, 4e6 / 30.25);
   std::vector<driver::Access> accesses(400, driver::read_of(reg::kMagic));

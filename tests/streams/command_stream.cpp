@@ -1,9 +1,11 @@
 // Usage: command_stream [--libm] [--list] [--one] [--keep] PROGRAM...
-// Reads, plans and encodes each program (a file, or generated:<lines>) for two machines: the default one, and one of
-// unequal scales, where arcs go out as chords. Prints a line for each: machine, program, commands, words, and a hash of
-// all words. Nothing but bits is compared, so nothing is rounded. --libm adds results of the C library's sin, cos,
-// atan2 and exp to the hash: what a comparison of two hosts must find different where their C libraries differ. --one:
-// the default machine alone. --keep: a byte of every command stays in memory, for the judge of memory.
+// Reads, plans and encodes each program (a file, or generated:<lines>) for two machines: the default machine, and a
+// machine with unequal scales, for which arcs are sent as chords. Prints one line for each: machine, program, commands,
+// words, and a hash of all words. The comparison is bit-exact, without a tolerance.
+// --libm: adds results of the C library's sin, cos, atan2 and exp to the hash. A comparison of two hosts must then find
+// a difference if their C libraries differ.
+// --list: prints the words. --one: the default machine only. --keep: keeps one byte of every command in memory, as a
+// leak for the memory test.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -25,7 +27,7 @@ namespace {
 
 using namespace trammel;
 
-// FNV-1a over bytes, lowest first.
+// FNV-1a over the bytes of a value, lowest byte first.
 class Hash {
  public:
   void add(std::uint64_t value, int bytes) {
@@ -39,9 +41,9 @@ class Hash {
 
 struct Options {
   bool libm = false;
-  bool list = false;  // the words, a line a command, to find where two hosts part
-  bool one = false;   // the default machine alone
-  bool keep = false;  // a byte of every command stays in memory
+  bool list = false;  // print the words, one line per command, to find the first difference between two hosts
+  bool one = false;   // the default machine only
+  bool keep = false;  // keep one byte of every command in memory
 };
 
 // Counts the commands and hashes their words.
@@ -80,7 +82,7 @@ std::unique_ptr<gcode::LineSource> open(const std::string& program) {
   return std::make_unique<gcode::FileLines>(program);
 }
 
-// Nothing, or why the program is refused.
+// Returns the error of a refused program.
 std::optional<gcode::Error> run(const std::string& program, const machine::Machine& machine, Stream& stream) {
   const std::unique_ptr<gcode::LineSource> lines = open(program);
   planner::CardLimits card;
@@ -104,7 +106,7 @@ void add_libm(Hash& hash) {
   }
 }
 
-// False where the program is refused, which is printed too: it must be refused alike everywhere.
+// Returns false if the program is refused. Prints the refusal too, because it must be the same on every host.
 bool print(const char* machine_name, const machine::Machine& machine, const std::string& program,
            const Options& options) {
   Stream stream(options.list, options.keep);

@@ -1,5 +1,5 @@
-// A program of any length that is nowhere held: lines, rapids, arcs, full circles and dwells in a cube of 160
-// mm. The same count and seed give the same program.
+// Generates a program of any length line by line, without storing it: lines, rapids, arcs, full circles and dwells,
+// with end points in a cube of 160 mm. The same count and seed give the same program.
 #pragma once
 
 #include <cstddef>
@@ -45,7 +45,7 @@ class GeneratedLines final : public gcode::LineSource {
     length_ += static_cast<std::size_t>(std::snprintf(text_ + length_, sizeof text_ - length_, format, values...));
   }
 
-  // -80.000 to 80.000, by thousandths.
+  // A coordinate from -80.000 to 80.000 in steps of 0.001.
   void word(char letter) {
     const auto thousandths = static_cast<unsigned>(random(80'001));
     write(" %c%s%u.%03u", letter, random(2) == 0 ? "-" : "", thousandths / 1000, thousandths % 1000);
@@ -56,13 +56,13 @@ class GeneratedLines final : public gcode::LineSource {
     if (kind < 8) {
       write("G0");
     } else if (kind < 20) {
-      write(kind < 14 ? "G2" : "G3");  // a radius over all distances
+      write(kind < 14 ? "G2" : "G3");  // R exceeds half of the largest distance (113 mm)
       word('X');
       word('Y');
       write(" R%u.5", 115 + static_cast<unsigned>(random(400)));
       return;
     } else if (kind < 25) {
-      // One after the other: in which order arguments are evaluated is the compiler's choice.
+      // Two statements, because the compiler chooses the order in which it evaluates arguments.
       write("G2 I%u.25", 1 + static_cast<unsigned>(random(20)));
       write(" J%u.125", 1 + static_cast<unsigned>(random(20)));
       return;

@@ -1,5 +1,5 @@
-// What reads, plans and encodes a program does so in memory that does not grow with it: the peak of a process of its
-// own, for two lengths.
+// Reading, planning and encoding a program must take memory that does not grow with its length. Compares the peak
+// memory of two processes, with programs of two lengths.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -13,7 +13,7 @@
 
 namespace {
 
-constexpr long kTolerance = 300;  // kB: pages come and go with the loader and the allocator
+constexpr long kTolerance = 300;  // kB; the loader and the allocator vary by some pages
 
 struct Process {
   bool good = false;
@@ -38,7 +38,7 @@ Process run(const std::vector<std::string>& command) {
   return {WIFEXITED(status) && WEXITSTATUS(status) == 0, usage.ru_maxrss, time.count()};
 }
 
-// Peaks of a program with so many lines, and with ten times as many or as TRAMMEL_LONG asks for.
+// Compares the memory for a short and a long program; the long one is longer if TRAMMEL_LONG is set.
 class Memory : public testing::Test {
  protected:
   void SetUp() override {
@@ -46,10 +46,10 @@ class Memory : public testing::Test {
     GTEST_SKIP() << "the sanitizer keeps what is freed";
 #endif
   }
-  // In kB; `few` and `many`: lines.
+  // Growth of the peak from `few` to `many` lines, kB.
   static long growth(std::vector<std::string> command, long few, long many) {
     command.emplace_back(fmt::format("generated:{}", few));
-    // Pages of the program's file count once they are in the system's cache, so a first run must bring them there.
+    // The peak includes pages of the executable only if they are in the system's page cache. A first run loads them.
     run(command);
     Process runs[2];
     for (const bool more : {false, true}) {
@@ -70,8 +70,8 @@ TEST_F(Memory, OfThePipelineDoesNotGrowWithTheProgram) {
   EXPECT_LT(growth({TRAMMEL_COMMAND_STREAM, "--one"}, 100'000, is_long() ? 10'000'000 : 1'000'000), kTolerance);
 }
 
-// The whole run, on the model engine. A picture's path is thinned at 20,000 points: only a long run has memory of its
-// full size in both programs.
+// The whole run, on the model engine. With --plot the path is thinned from 20,000 points on, so only long programs have
+// the full size in both runs.
 TEST_F(Memory, OfARunDoesNotGrowWithTheProgram) {
   if (is_long()) {
     EXPECT_LT(growth({TRAMMEL_RUN, "--plot"}, 100'000, 1'000'000), kTolerance);
@@ -84,7 +84,7 @@ TEST_F(Memory, OfAnObserverThatKeepsIsSeenToGrow) {
   EXPECT_GT(growth({TRAMMEL_RUN, "--keep"}, 3'000, 15'000), kTolerance);
 }
 
-// A byte kept for each command is seen.
+// The test detects a leak of one byte per command.
 TEST_F(Memory, OfASinkThatKeepsIsSeenToGrow) {
   EXPECT_GT(growth({TRAMMEL_COMMAND_STREAM, "--one", "--keep"}, 100'000, 300'000), kTolerance);
 }

@@ -1,8 +1,7 @@
 // Usage: run_long_program [--plot] [--keep] generated:<lines>
-// Runs a cheap program of so many lines on the model engine, from reader to steps, with a recorder whose lists go
-// nowhere.
-// --plot: it keeps the thinned path and speed of a picture too. --keep: an observer keeps 16 bytes of every command,
-// for the judge of memory.
+// Runs a program of short moves on the model engine, from reader to steps. The recorder's lists are discarded.
+// --plot: the recorder also keeps the thinned path and speed for a plot. --keep: an observer keeps 16 bytes of every
+// command, as a leak for the memory test.
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -22,7 +21,7 @@ namespace {
 
 using namespace trammel;
 
-// There and back by one pulse.
+// Moves back and forth by one pulse.
 class ShortMoves final : public gcode::LineSource {
  public:
   explicit ShortMoves(std::uint64_t count) : left_(count) {}

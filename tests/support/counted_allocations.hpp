@@ -1,12 +1,12 @@
-// Counts every allocation of the process: linking counted_allocations.cpp replaces the global operator new. For a test
-// of code that must allocate nothing, on one thread.
+// Counts every allocation of the process: linking counted_allocations.cpp replaces the global operator new. For tests
+// of code that must not allocate. The counter is not atomic, so only one thread may run.
 #pragma once
 
 #include <cstddef>
 
 namespace trammel::test {
 
-// Since the start of the process.
+// Number of allocations since the start of the process.
 std::size_t allocations();
 
 }  // namespace trammel::test

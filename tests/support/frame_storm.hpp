@@ -1,6 +1,6 @@
-// A host behind a bad link: frames are damaged, cut, repeated, merged, reordered and lost on their way to a card,
-// replies on their way back, and every access that the card then makes is judged: it must be the next one of the one
-// request that may run now. Serves the endpoint without time, the frame engine and the ports' pins alike.
+// A host behind a bad link. Frames are damaged, cut, repeated, merged, reordered and lost on their way to a card;
+// replies are damaged and lost on their way back. Every access of the card is judged: it must be the next access of the
+// one request that may run now. Used at three places: the untimed endpoint, the frame engine and the pins of the ports.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@ namespace trammel::test {
 
 class FrameStorm {
  public:
-  // Brings bytes to the card and gives back what it replied.
+  // Delivers bytes to the card and returns its reply.
   using Card = std::function<frames::Bytes(const frames::Bytes&)>;
-  // A new connection without a request (a break); empty where the card has none.
+  // Starts a new connection without a request (a break). Empty if the card has no such event.
   using Restart = std::function<void()>;
 
   struct Answer {
@@ -29,11 +29,11 @@ class FrameStorm {
   };
 
   struct Counts {
-    std::uint64_t frames = 0;    // on their way to the card, whole or not
-    std::uint64_t damaged = 0;   // of these
-    std::uint64_t repeated = 0;  // of these, among them frames of former connections
-    std::uint64_t requests = 0;  // that ran
-    std::uint64_t refused = 0;   // of these, in part
+    std::uint64_t frames = 0;    // frames sent to the card, whole or damaged
+    std::uint64_t damaged = 0;   // damaged ones of these frames
+    std::uint64_t repeated = 0;  // repeated ones of these frames, including frames of earlier connections
+    std::uint64_t requests = 0;  // requests that ran
+    std::uint64_t refused = 0;   // requests of these that the card refused at one of their words
     std::uint64_t connections = 0;
     std::uint64_t lost_replies = 0;
   };
@@ -42,7 +42,7 @@ class FrameStorm {
   FrameStorm(std::uint64_t seed, Card card, Restart restart, std::uint32_t long_one_in = 4)
       : random_(seed), card_(std::move(card)), restart_(std::move(restart)), long_one_in_(long_one_in) {}
 
-  // Sends until `frames` have gone; the request under way is finished.
+  // Sends at least `frames` frames, until the reply to the last request has arrived.
   void run(std::uint64_t frames) {
     if (counts_.connections == 0) {
       connect();
@@ -52,7 +52,7 @@ class FrameStorm {
     while (counts_.frames < until) request();
   }
 
-  // The card makes an access. Throws std::logic_error when it is not the one that is due.
+  // Serves an access of the card. Throws std::logic_error if it is not the expected access.
   Answer access(bool write, std::uint32_t address, std::uint32_t data) {
     if (address < kFirst) {
       if (write || address < 0x40 || address > 0x50) fail("an access to the card's state that no reply needs");
@@ -72,7 +72,7 @@ class FrameStorm {
   }
 
   const Counts& counts() const { return counts_; }
-  // What was tried, for the log; that it is printed says that nothing was wrong.
+  // Summary for the log. A fault throws, so a printed summary means that there was none.
   std::string text() const {
     return std::to_string(counts_.frames) + " frames through a bad link (" + std::to_string(counts_.damaged) +
            " damaged, " + std::to_string(counts_.repeated) + " repeated, " + std::to_string(counts_.lost_replies) +
@@ -96,7 +96,7 @@ class FrameStorm {
 
   std::uint32_t due_address() const { return current_.address + (current_.fixed ? 0U : 4U * made_); }
 
-  // A request of random words, short ones more often.
+  // Chooses a request of random words; short requests are more frequent.
   void choose() {
     frames::Request r;
     r.kind = chance(3) ? frames::Kind::Read : frames::Kind::Write;
@@ -112,7 +112,7 @@ class FrameStorm {
     stopped_ = false;
     refuse_at_ = chance(8) ? below(r.count) : ~0U;
   }
-  // Bytes that are stuffed come more often than by chance.
+  // Bytes that need stuffing are more frequent than in random data.
   std::uint32_t word() {
     std::uint32_t w = draw();
     if (chance(4)) w = (w & ~0xFF00U) | std::uint32_t{frames::kEnd} << 8;
@@ -120,7 +120,7 @@ class FrameStorm {
     return w;
   }
 
-  // One request through the storm to its reply.
+  // Repeats one request over the bad link until its reply arrives.
   void request() {
     frames::Bytes stream{frames::kEnd};
     frames::append_request(stream, current_);
@@ -139,12 +139,13 @@ class FrameStorm {
     ++counts_.requests;
     counts_.refused += stopped_ ? 1 : 0;
     last_ = current_.number;
-    // A number may come again only in another connection.
+    // A request number may be used again only in a new connection.
     if (last_ == 0xFFFF || chance(5000)) connect();
     choose();
   }
 
-  // A new connection. If the request has not run, the host may as well want something else; the frame comes late.
+  // Starts a new connection. If the request has not run yet, the host may replace it by another one. The frame of the
+  // old connection arrives late.
   void restart(frames::Bytes& stream) {
     const frames::Bytes before = stream;
     restart_();
@@ -158,7 +159,7 @@ class FrameStorm {
     deliver(before);
   }
 
-  // Something else than the frame in one piece.
+  // Sends an old frame, noise or a damaged frame, or holds a copy of the frame back for later.
   void disturb(const frames::Bytes& stream) {
     ++counts_.frames;
     switch (below(8)) {
@@ -191,7 +192,7 @@ class FrameStorm {
     deliver(bytes);
   }
 
-  // The first byte only closes what came before; what comes after it is damaged.
+  // Keeps the first byte (END), which only ends earlier bytes, and damages the bytes after it.
   void damaged(frames::Bytes bytes) {
     ++counts_.damaged;
     const auto size = static_cast<std::uint32_t>(bytes.size());
@@ -203,7 +204,7 @@ class FrameStorm {
       case 1:
         burst(bytes);
         break;
-      case 2:  // cut, mostly without its end
+      case 2:  // cut short; three times out of four without END
         bytes.resize(place);
         if (chance(4)) bytes.push_back(frames::kEnd);
         break;
@@ -213,7 +214,7 @@ class FrameStorm {
       case 4:
         bytes.erase(bytes.begin() + place, bytes.begin() + place + 1 + below(size - place));
         break;
-      default:  // the beginning of one, then the rest of another
+      default:  // the beginning of this frame, then the end of another one
         if (kept_.empty()) return deliver(bytes);
         const frames::Bytes& other = kept_[below(static_cast<std::uint32_t>(kept_.size()))];
         bytes.resize(place);
@@ -235,10 +236,10 @@ class FrameStorm {
     }
   }
 
-  // What comes back is for nobody: the host waits for another reply.
+  // Ignores the card's reply: the host waits for another one.
   void deliver(const frames::Bytes& bytes) { card_(bytes); }
 
-  // True when the reply reached the host. The frame was whole and began with an end, so the card has to reply to it.
+  // Returns true if the reply reached the host. The frame was whole and began with END, so the card must reply to it.
   bool judge(frames::Bytes bytes) {
     if (chance(8) && !bytes.empty()) {
       ++counts_.lost_replies;
@@ -276,7 +277,7 @@ class FrameStorm {
     return *reply;
   }
 
-  // As a host does: ask for the epoch, then move it on.
+  // Connects as a host does: asks for the epoch, then increments it.
   void connect() {
     frames::Request ask;
     ask.number = static_cast<std::uint16_t>(draw());
@@ -302,7 +303,8 @@ class FrameStorm {
     return last_reply(card_(stream));
   }
 
-  // The last frames, and one of every thousand for ever after.
+  // Keeps frames for repetition. Nearly all replace a frame in the first half of the places. One in 1000 may go to any
+  // place, so the second half holds old frames.
   void keep(const frames::Bytes& stream) {
     if (kept_.size() < kKept) return kept_.push_back(stream);
     kept_[below(chance(1000) ? kKept : kKept / 2)] = stream;
@@ -315,11 +317,11 @@ class FrameStorm {
   Counts counts_;
   std::uint16_t epoch_ = 0;
   std::uint16_t last_ = 0;
-  std::uint16_t card_last_ = 0;  // when it was connected last
+  std::uint16_t card_last_ = 0;  // last request that the card had run, as it reported at the last connection
   frames::Request current_;
-  std::uint32_t made_ = 0;       // accesses of it that the card has made
-  std::uint32_t refuse_at_ = 0;  // the word that is refused, where there is one
-  bool stopped_ = false;         // it was
+  std::uint32_t made_ = 0;       // accesses of current_ that the card has made
+  std::uint32_t refuse_at_ = 0;  // index of the word that is refused; ~0: none
+  bool stopped_ = false;         // the refusal has happened
   std::vector<std::uint32_t> read_;
   std::vector<frames::Bytes> kept_;
   std::vector<frames::Bytes> late_;

@@ -1,4 +1,4 @@
-// A card that homes: switches at its inputs follow the motors.
+// A card for tests of homing, with switches at its inputs that follow the motors.
 #pragma once
 
 #include <algorithm>
@@ -19,23 +19,25 @@
 
 namespace trammel::run {
 
-inline constexpr std::uint32_t kHomingClock = 1'000'000;  // of the card, Hz
+inline constexpr std::uint32_t kHomingClock = 1'000'000;  // clock of the card, Hz
 
-// A switch that is pressed from a motor's pulse on, outward in `direction`; it bounces for some clocks at each change.
+// A switch that is pressed while its motor is at pulse `edge` or beyond it in `direction`, over `width` pulses. It
+// bounces for `bounce` clocks after each change.
 struct Switch {
   unsigned input = 0;
   unsigned motor = 0;
-  std::int64_t edge = 0;  // pulse at which it is pressed first
+  std::int64_t edge = 0;  // first pulse at which the switch is pressed
   int direction = -1;
-  std::int64_t width = 1'000'000;  // pulses that it stays pressed for: an index mark is short
+  std::int64_t width = 1'000'000;  // pulses over which it stays pressed; an index mark is short
   std::uint64_t bounce = 0;        // clocks
   bool broken = false;
   bool pressed = false;
   std::uint64_t changed = 0;
 };
 
-// An engine with switches at its inputs, which are looked at every kSlice clocks. The card stands at `start`, pulses.
-// With crossed belts a switch's motor 0 is the carriage along X, and 1 that along Y.
+// An engine with switches at its inputs. Close to a switch the levels are updated every kSlice clocks. `start`: initial
+// position, pulses. With crossed belts (CoreXY), motor 0 of a switch is the carriage along X and motor 1 the carriage
+// along Y.
 class BusWithSwitches final : public driver::Bus {
  public:
   static constexpr std::uint64_t kSlice = 8;
@@ -88,7 +90,7 @@ class BusWithSwitches final : public driver::Bus {
   }
 
  private:
-  // Not beyond the nearest edge: no motor makes more than a pulse in kFastestPulse clocks.
+  // Clocks until the next update. No motor reaches an edge before it: a pulse takes at least kFastestPulse clocks.
   std::uint64_t slice() const {
     constexpr std::uint64_t kFastestPulse = 24;
     std::uint64_t nearest = 1000;
@@ -106,12 +108,13 @@ class BusWithSwitches final : public driver::Bus {
   std::vector<std::int64_t> start_;
   bool crossed_belts_;
   std::vector<Switch> switches_;
-  std::vector<std::int64_t> at_;  // as of the last look
+  std::vector<std::int64_t> at_;  // positions at the last look()
   std::uint32_t levels_ = 0;
   bool looked_ = false;
 };
 
-// Home switches at inputs 0 (X), 1 (Y) and 2 (Z), an index of X at 3; X also at 4 for a second motor.
+// Home switches at inputs 0 (X), 1 (Y) and 2 (Z), and an index of X at 3. `more`: further entries, separated by ';'.
+// Tests with a second motor of X use input 4 for its home switch.
 inline machine::Machine homing_machine(const std::string& more = "") {
   machine::Machine machine = machine::default_machine();
   const auto set = [&](const std::string& text) { machine::apply_override(machine, text); };
@@ -159,9 +162,9 @@ class HomingBench {
     options.say = [this](const std::string& text) { said_ = text; };
     return run::home(*card_, machine_, position, axes, options);
   }
-  // What was said last.
+  // The last text that HomingOptions::say received.
   const std::string& said() const { return said_; }
-  // Where the machine believes to stand, mm.
+  // Machine coordinate of an axis according to the place that the card keeps, mm.
   double coordinate(std::size_t axis) { return standing_at(machine_, read_card_place(*card_))[axis]; }
   std::string error_of(const std::vector<std::size_t>& axes) {
     try {

@@ -1,5 +1,5 @@
-// A bus with posted writes before any other: what the card refuses does not show, as behind a bridge that answers
-// writes by itself.
+// A bus with posted writes in front of another bus. It hides refusals of the card, like a bridge that acknowledges
+// writes itself.
 #pragma once
 
 #include "trammel/driver/bus.hpp"

@@ -1,5 +1,6 @@
-// A bus without a card behind it: registers that are as a test sets them, a log of all accesses, and faults on demand.
-// What a card does belongs to the model engine (trammel/sim/engine.hpp); this is for what no card does.
+// A bus without a card. A test sets the values of the registers; all accesses are logged; faults are injected on
+// demand. It is for behaviour that no working card shows. The model engine (trammel/sim/engine.hpp) is for the
+// behaviour of a card.
 #pragma once
 
 #include <chrono>
@@ -17,14 +18,14 @@
 
 namespace trammel::test {
 
-// What an access was: {true, address, data} for a write, {false, address, 0} for a read.
+// An access that was made: {true, address, data} for a write, {false, address, 0} for a read.
 using Made = std::tuple<bool, std::uint32_t, std::uint32_t>;
 inline Made wrote(std::uint32_t address, std::uint32_t data) { return {true, address, data}; }
 inline Made was_read(std::uint32_t address) { return {false, address, 0}; }
 
 class RegisterStub : public driver::Bus {
  public:
-  // An idle card of so many axes with every engine that the driver uses.
+  // An idle card of `axes` axes with lines, accumulator, jerk and direct mode.
   explicit RegisterStub(unsigned axes = 4, std::uint32_t clock_hz = 1'000'000) {
     namespace reg = card_map::reg;
     values[reg::kMagic] = card_map::kMagicValue;
@@ -40,7 +41,7 @@ class RegisterStub : public driver::Bus {
     values[reg::kSlew] = 0xFFFFFFF;
   }
 
-  // Describes the units of a card that is built with these engines; the number of axes is as AXES says.
+  // Sets the unit descriptors of a card that is built with these engines and with the number of axes in AXES.
   void set_engines(std::uint32_t engines) {
     engines_ = engines;
     const card_map::CardShape shape{engines, values[card_map::reg::kAxes], 1, 4, 4, 4};
@@ -48,16 +49,18 @@ class RegisterStub : public driver::Bus {
   }
   void add_engines(std::uint32_t engines) { set_engines(engines_ | engines); }
 
-  // Read and written registers; 0 where nothing is set. Orders are only logged, writing ones clears where the map says.
+  // Values of the registers; 0 if not set. A write changes a setting, and clears bits of a register for which the map
+  // says so (ClearOnes). Other writes (orders) are only logged.
   std::map<std::uint32_t, std::uint32_t> values;
-  // What the next reads of a register give, before its value.
+  // Results of the next reads of a register; further reads return its entry in `values`.
   std::map<std::uint32_t, std::deque<std::uint32_t>> next;
-  // Called before each access. False: the card refuses it. May change what a read gives by setting `values`; may throw.
+  // Called before each access. False: the card refuses the access. May set `values` to change the result of a read; may
+  // throw.
   std::function<bool(const driver::Access&)> on_access;
-  bool posted = false;  // refusals do not show
+  bool posted = false;  // refusals are not reported
 
   std::vector<Made> log;
-  std::vector<std::size_t> transfers;  // accesses of each
+  std::vector<std::size_t> transfers;  // number of accesses of each transfer
   std::vector<std::chrono::nanoseconds> sleeps;
   std::chrono::nanoseconds slept{0};
 

@@ -1,4 +1,4 @@
-// The steps of a card, for tests.
+// Records the steps and output changes of a card, for tests.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class Steps final : public driver::StepSink {
   void path_step(const driver::PathStep& step) override { path.push_back(step); }
   void outputs_changed(const driver::OutputChange& change) override { outputs.push_back(change); }
 
-  // Where the pins have brought an axis up to a cycle, from where it was at first.
+  // Position of an axis relative to its start, pulses: the sum of its steps at the pins up to and including `cycle`.
   std::int64_t position(std::size_t axis, std::uint64_t cycle = ~std::uint64_t{0}) const {
     std::int64_t sum = 0;
     for (const driver::PinStep& step : pins) sum += step.axis == axis && step.cycle <= cycle ? step.direction : 0;

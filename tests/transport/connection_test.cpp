@@ -1,4 +1,4 @@
-// `sim:` as other URLs: a connection that a card is opened on.
+// `sim:` works like other URLs: a connection on which a card is opened.
 #include "trammel/transport/connection.hpp"
 
 #include <gtest/gtest.h>

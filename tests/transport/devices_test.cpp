@@ -1,5 +1,5 @@
-// SPI and memory at their system calls: exact accesses, lengths, errors. No hardware was there; at the other end of the
-// calls is a card's frame engine without time, or memory.
+// SPI and memory with mocked system calls: exact accesses, lengths, errors. No hardware was used; the other end of the
+// calls is the frame engine of a card without timing, or memory.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -27,8 +27,7 @@ using namespace std::chrono_literals;
 using driver::Access;
 using ::testing::HasSubstr;
 
-// What is expected of the device, call by call: what the call is, and what it gives. A call that is not the next one
-// fails the test, and so does one that does not come.
+// Expected calls to the device in order, with their results. Any other call fails the test, and so does a missing one.
 class Calls final : public SystemCalls {
  public:
   using Answer = std::function<std::int64_t(const void*)>;
@@ -44,9 +43,9 @@ class Calls final : public SystemCalls {
                       return result;
                     }});
   }
-  // The answer looks at what the call points to.
+  // The answer may read the argument of the call.
   void expect(const std::string& call, Answer answer) { due_.push_back({call, std::move(answer)}); }
-  // Every further call of an exchange, once nothing else is due.
+  // Answers all further exchange calls when no other call is expected.
   void exchange_with(Answer answer) { exchange_ = std::move(answer); }
   void map_at(void* memory) { memory_ = static_cast<std::uint8_t*>(memory); }
 
@@ -96,7 +95,7 @@ class Calls final : public SystemCalls {
     due_.pop_front();
     return static_cast<Result>(answer(argument));
   }
-  // Bytes from where the file was mapped.
+  // Bytes from the start of the mapping.
   std::ptrdiff_t place(const volatile std::uint32_t* word) const {
     return reinterpret_cast<const volatile std::uint8_t*>(word) - memory_;
   }
@@ -221,7 +220,8 @@ TEST_F(MemoryTest, Errors) {
 
 // --- SPI ---
 
-// A card at the wires' end: its reply goes out in the exchanges that follow, ends where it has nothing to say.
+// A card at the other end of the wires. Its reply goes out in the following exchanges; it sends END bytes when it has
+// nothing to say.
 class SpiCard {
  public:
   explicit SpiCard(frames::Endpoint::Access access) : endpoint_(std::move(access)) {}
@@ -254,7 +254,7 @@ class SpiCard {
 
 class SpiTest : public ::testing::Test {
  protected:
-  // Byte or word that the call points to.
+  // The call points to a byte or a word.
   template <class Value>
   void expect_setting(unsigned long request, Value due) {
     calls_.expect(fmt::format("ioctl 7 {}", request), [due](const void* value) {
@@ -268,7 +268,7 @@ class SpiTest : public ::testing::Test {
     expect_setting<std::uint8_t>(SPI_IOC_WR_BITS_PER_WORD, 8);
     expect_setting<std::uint32_t>(SPI_IOC_WR_MAX_SPEED_HZ, 12'500'000);
   }
-  // A link that is closed at the end.
+  // A link that the caller closes by destroying it.
   std::unique_ptr<SpiLink> link_of(unsigned mode) {
     return std::make_unique<SpiLink>("/dev/spidev0.0", SpiLink::Options{12'500'000, mode}, calls_);
   }
@@ -298,8 +298,8 @@ TEST_F(SpiTest, TheReplyComesInTheNextExchanges) {
   EXPECT_EQ(written.size(), 59U);
   EXPECT_EQ(accesses.back().data, 0x100U + 4 * 58);
   EXPECT_EQ(bus.counts().sent_again, 0U);
-  // The write in one exchange, its reply (36 bytes and what is stuffed) in the next; then the read, and 272 bytes or
-  // more in exchanges of 48.
+  // One exchange carries the write, the next one its reply (36 bytes plus stuffing). Then the read follows, with a
+  // reply of at least 272 bytes in exchanges of 48 bytes.
   frames::Request request;
   request.kind = frames::Kind::Write;
   request.fixed = true;

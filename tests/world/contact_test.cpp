@@ -1,4 +1,5 @@
-// Contacts: what they show at rest, and that they bounce as their seed says, no longer than they may, to the right end.
+// Contacts: their level at rest, and their bounces, which follow the seed, stay within their time and end at the right
+// level.
 #include "trammel/world/contact.hpp"
 
 #include <gmock/gmock.h>
@@ -45,7 +46,7 @@ TEST(WorldContact, BouncesWithinItsTimeToTheRightEnd) {
     contact.set(true, 5000);
     EXPECT_TRUE(contact.closed());
     const auto changes = changes_of(contact);
-    // Two at one clock are none.
+    // Two changes in one clock cancel each other.
     EXPECT_LE(changes.size(), 6U);
     EXPECT_GE(changes.size(), 4U);
     EXPECT_GT(changes.front(), 5000U);
@@ -67,7 +68,7 @@ TEST(WorldContact, TheSeedDecides) {
 TEST(WorldContact, ReleasedWhileItBouncesItStillEndsReleased) {
   Contact contact({false, 1e-3, 4}, kClock, 3);
   contact.set(true, 0);
-  contact.set(true, 10);  // pressed already
+  contact.set(true, 10);  // already pressed
   contact.run_to(contact.next_change());
   contact.set(false, contact.next_change());
   EXPECT_FALSE(contact.closed());

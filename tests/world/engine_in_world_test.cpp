@@ -1,4 +1,4 @@
-// The golden model in a world: what the machine does to the card, and when.
+// The golden model in a world: effects of the machine on the card, and their times.
 #include "trammel/world/engine_in_world.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 constexpr std::int64_t kPulsesAMm = 80;
 
-// The switch at +10 mm, and the end of the travel behind it.
+// The switch at +10 mm, and the end of the travel at +15 mm.
 std::string near_plus() { return changed_world("above = 300", "above = 10", changed_world("high = 305", "high = 15")); }
 
 TEST(EngineInWorld, ACarriageFollowsTheCard) {
@@ -41,23 +41,23 @@ TEST(EngineInWorld, ACarriageRunsIntoItsLimitAndTheCardStops) {
   EXPECT_EQ(x.commanded(), at);
   EXPECT_EQ(x.place(), at);
   EXPECT_EQ(x.lost(), 0);
-  // 4,000 pulses/s behind the switch for the filter, scans and the carriage's own delay.
+  // At 4,000 pulses/s the filter, the scans and the delay of the carriage take the axis past the switch.
   EXPECT_GT(at, 10 * kPulsesAMm);
   EXPECT_LT(at, 10 * kPulsesAMm + 20);
-  // Away from it is free, and releases it.
+  // Moving away from the switch is allowed and releases it.
   c.card.clear_faults();
   EXPECT_EQ(c.end_of("G91\nG1 X-5 F3000\n"), "its end");
   EXPECT_FALSE(c.world.pressed("x_plus"));
   EXPECT_EQ(c.world.carriage(0).place(), at - 5 * kPulsesAMm);
 }
 
-// Longer than the filter a bounce is none; this switch bounces for less, and the stop comes once.
+// The switch bounces for less than the filter, so the card stops once.
 TEST(EngineInWorld, BouncesReachThePin) {
   WorldCard c(near_plus());
   const std::uint32_t before = c.card.read_raw_inputs();
   c.end_of("G1 X9.9 F3000\nG4 P0.1\n");
   EXPECT_EQ(c.card.read_raw_inputs(), before);
-  for (int n = 0; n < 10; ++n) c.world.pulse(c.world.now(), 0, +1);  // by hand: beyond the switch
+  for (int n = 0; n < 10; ++n) c.world.pulse(c.world.now(), 0, +1);  // past the switch, without the card
   int changes = 0;
   std::uint32_t level = before;
   for (int n = 0; n < 200; ++n) {
@@ -84,7 +84,7 @@ TEST(EngineInWorld, AWeakMotorLosesStepsAndThePulsesPartFromTheCarriage) {
 
 TEST(EngineInWorld, TheEndOfTheTravelHoldsWhatNoSwitchHasStopped) {
   WorldCard c(near_plus());
-  machine::apply_override(c.machine, "inputs.x_limit_plus=15");  // a switch that nobody wired
+  machine::apply_override(c.machine, "inputs.x_limit_plus=15");  // an input without a switch
   EXPECT_EQ(c.end_of("G1 X40 F3000\n"), "its end");
   EXPECT_LE(c.world.carriage(0).place(), 15 * kPulsesAMm);
   EXPECT_GT(c.world.carriage(0).lost(), 20 * kPulsesAMm);
@@ -100,7 +100,7 @@ TEST(EngineInWorld, TheEmergencyStopAtItsTime) {
   EXPECT_GE(c.steps.pins.back().cycle, pressed - 200);
   EXPECT_TRUE(c.world.emergency_stop());
   EXPECT_EQ(c.world.carriage(0).commanded(), c.engine.positions()[0]);
-  // Without power it rolled on, some pulses.
+  // Without power the carriage rolled on by some pulses.
   EXPECT_GT(c.world.carriage(0).place(), c.engine.positions()[0]);
   c.engine.wait(kCardClock);
   EXPECT_FALSE(c.world.emergency_stop());
@@ -124,7 +124,7 @@ TEST(EngineInWorld, AProbeFindsItsPlate) {
   EXPECT_EQ(c.world.carriage(2).place(), c.engine.positions()[2]);
 }
 
-// A world that wires nothing changes no clock of the card.
+// A world that wires no input of the program does not change the timing of the card by a single clock.
 TEST(EngineInWorld, ClockByClockTheCardInside) {
   const std::string program = "G1 X3 Y2 F6000\nG1 X0\n";
   const std::string world = "[axis.x]\n[axis.y]\n[switch.a]\ninput = 15\naxis = \"x\"\nabove = 2\n";
@@ -161,7 +161,7 @@ TEST(EngineInWorld, WhatTheWorldWiresIsTheWorlds) {
   EXPECT_EQ(c.card.read_raw_inputs(), (before | 1U << 15) & ~(1U << 7));
 }
 
-// What happens in the middle of a transfer is seen by its later accesses.
+// A pin that changes during a transfer is visible in the later accesses of the transfer.
 TEST(EngineInWorld, APinChangesBetweenTheAccessesOfOneTransfer) {
   constexpr std::uint64_t kPressed = 8000;  // clocks: 20 ms
   World world(parse_world("events = [\"at 20 ms press feed_hold\"]\n" + default_world_text(), "test world"),
@@ -175,7 +175,7 @@ TEST(EngineInWorld, APinChangesBetweenTheAccessesOfOneTransfer) {
   EXPECT_TRUE(std::any_of(reads.begin(), reads.end(), [](auto& read) { return (read.data >> 6 & 1U) == 0; }));
 }
 
-// A closed contact is 0 also where the machine file says that this is the active level; an unwired input would be 1.
+// A closed contact reads 0, also if the machine file makes this the active level; an unwired input would be 1.
 TEST(EngineInWorld, FromTheBeginningEachWiredInputHasItsLevel) {
   World world(default_world(), kCardClock);
   EngineInWorld engine(model_card(), world);
@@ -200,7 +200,7 @@ TEST(EngineInWorld, AResetOfTheCardLeavesTheMachineWhereItIs) {
 }
 
 TEST(EngineInWorld, WaitsForTheInterruptAsTheEngineInside) {
-  // An event in the middle cuts the wait.
+  // An event in the middle interrupts the wait.
   World world(parse_world("events = [\"at 30 ms press feed_hold\"]\n" + default_world_text(), "test world"),
               kCardClock);
   EngineInWorld engine(model_card(true), world);

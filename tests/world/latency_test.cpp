@@ -1,4 +1,4 @@
-// How late a pin follows its contact: against a world that is fed the same pulses and looked at in every clock.
+// Delay from a contact to its pin, against a world that gets the same pulses and is observed in every clock.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct PinChange {
   bool level;
 };
 
-// The golden model, which notes when its inputs are set and how long its accesses take.
+// The golden model; it records when its inputs are set and how long its accesses take.
 class NotingEngine final : public sim::Engine {
  public:
   explicit NotingEngine(std::vector<PinChange>& changes, std::uint64_t& longest)
@@ -51,7 +51,7 @@ class NotingEngine final : public sim::Engine {
   std::uint64_t& longest_access_;
 };
 
-// The pins of a world that gets `steps`, clock by clock up to `end`.
+// Changes of the pins in a world that gets `steps`, clock by clock up to `end`.
 std::vector<PinChange> contacts(const std::string& world_text, const std::vector<driver::PinStep>& steps,
                                 std::uint64_t end) {
   World world(parse_world(world_text, "test world"), kCardClock);
@@ -70,7 +70,7 @@ std::vector<PinChange> contacts(const std::string& world_text, const std::vector
   return changes;
 }
 
-// Four switches within the program's way, so that many changes fall into accesses too.
+// Four switches within the travel of the program, so that many changes fall into accesses.
 std::string narrow_world() {
   std::string text = changed_world("above = 300", "above = 3");
   text = changed_world("below = -100", "below = -3", text);
@@ -98,7 +98,7 @@ TEST(WorldLatency, APinIsAtMostOneAccessBehindItsContact) {
   std::size_t unseen = 0;
   auto pin = at_pins.begin();
   for (const PinChange& change : made) {
-    // Two bounces of one contact within an access leave the pin as it was.
+    // Two bounces of a contact within one access leave the pin unchanged.
     if (pin == at_pins.end() || pin->input != change.input || pin->level != change.level ||
         pin->cycle > change.cycle + longest_access) {
       ++unseen;

@@ -1,4 +1,5 @@
-// The motor by closed forms: the swing of a loose rotor, the largest torque, friction's way to rest, lost steps.
+// The motor in closed forms: the oscillation of a free rotor, the largest torque, the way to rest with friction, lost
+// steps.
 #include "trammel/world/motor.hpp"
 
 #include <gmock/gmock.h>
@@ -40,7 +41,7 @@ TEST(WorldMotor, FollowsItsPulsesAndStandsStillAtThem) {
   EXPECT_LT(motor.largest_lag(), 16);
 }
 
-// Small swings without losses have the period 2 pi sqrt(J / (T * 50)): 50 electrical turns a turn.
+// Small oscillations without losses have the period 2 pi sqrt(J / (T * 50)), with 50 electrical turns per turn.
 TEST(WorldMotor, SwingsAtItsOwnFrequency) {
   const MotorParameters p = without_losses();
   Motor motor(p);
@@ -59,7 +60,7 @@ TEST(WorldMotor, SwingsAtItsOwnFrequency) {
   EXPECT_NEAR(motor.largest_lag(), 1, 0.02);
 }
 
-// Half of an electrical turn before the field it would be pulled the other way.
+// A rotor more than half an electrical turn behind the field is pulled in the other direction.
 TEST(WorldMotor, ARotorLeftBehindByMoreThanTwoFullStepsFallsIntoTheNextPlace) {
   Motor near;
   for (int n = 0; n < 31; ++n) near.pulse(+1);
@@ -74,7 +75,7 @@ TEST(WorldMotor, ARotorLeftBehindByMoreThanTwoFullStepsFallsIntoTheNextPlace) {
   EXPECT_TRUE(far.still());
 }
 
-// A quarter of an electrical turn before the field the torque is largest: from rest that is the whole acceleration.
+// The torque is largest a quarter of an electrical turn behind the field; at rest it is the whole acceleration.
 TEST(WorldMotor, PullsWithItsHoldingTorque) {
   const MotorParameters p = without_losses();
   Motor motor(p);
@@ -134,14 +135,15 @@ TEST(WorldCarriage, AnEndStopHoldsItAndStepsAreLost) {
   }
   for (int k = 0; k < 50000; ++k) carriage.advance(kStep);
   EXPECT_EQ(carriage.commanded(), 300);
-  // The field holds it at 108, and so presses it against the stop.
+  // The field holds the motor at 108 and so presses the carriage against the stop.
   EXPECT_EQ(carriage.lost(), 192);
   EXPECT_EQ(carriage.place(), 100);
   EXPECT_THROW((Carriage{{{}, 1, 2}}), std::invalid_argument);
   EXPECT_THROW((Carriage{{{}, -2, -1}}), std::invalid_argument);
 }
 
-// The promise that EngineInWorld waits by, at the strongest pull that there is: a quarter of an electrical turn ahead.
+// EngineInWorld relies on this bound for its waits. The pull is the strongest possible one: a quarter of an electrical
+// turn.
 TEST(WorldCarriage, StepsShortOfAnEdgeAreShortOfItAndNotByMuch) {
   CarriageParameters p;
   p.motor = without_losses();
@@ -150,7 +152,7 @@ TEST(WorldCarriage, StepsShortOfAnEdgeAreShortOfItAndNotByMuch) {
     const std::uint64_t promised = carriage.steps_short_of(edge, kStep);
     std::uint64_t steps = 0;
     for (;; ++steps) {
-      // The field a quarter of a turn before the rotor.
+      // Keeps the field a quarter of an electrical turn ahead of the rotor.
       while (static_cast<double>(carriage.commanded()) - carriage.position() < 16) carriage.pulse(+1);
       carriage.advance(kStep);
       if (carriage.position() >= static_cast<double>(edge)) break;

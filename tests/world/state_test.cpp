@@ -1,4 +1,4 @@
-// The state as text, and requests.
+// The state as text, and the requests.
 #include "trammel/world/state.hpp"
 
 #include <gmock/gmock.h>
@@ -65,7 +65,7 @@ TEST(WorldState, NamesWhatTheMachineIsLike) {
             HasSubstr(R"("inputs":324,"emergency_stop":true,"path":{"steps":12,"identity":"ab"})")));
 }
 
-// A weak motor: the card counts on, the carriage does not follow.
+// Z has a weak motor: the card counts on, but the carriage does not follow.
 TEST(WorldState, TellsLostStepsApartFromTheCardsCount) {
   World world = state_world();
   for (int n = 0; n < 4000; ++n) world.pulse(world.now() + 50, 1, +1);

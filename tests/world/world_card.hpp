@@ -1,4 +1,4 @@
-// A card with the default world, or a changed one, behind its pins, and programs that run on it.
+// A card whose pins are connected to the default world or to a changed one, and programs that run on it.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace trammel::world {
 
 inline constexpr std::uint32_t kCardClock = 400'000;  // Hz
 
-// The default world with `from` in its text replaced, once.
+// The text of the default world with the first `from` replaced.
 inline std::string changed_world(const std::string& from, const std::string& to,
                                  std::string text = default_world_text()) {
   const std::size_t at = text.find(from);
@@ -40,7 +40,7 @@ class WorldCard {
     machine::apply_override(machine, "probe.input=9");
   }
 
-  // What ends the program.
+  // Runs the program; returns "its end" or the message of the error that ended it.
   std::string end_of(const std::string& text) {
     const auto shared = std::make_shared<const std::string>(text);
     run::Runner runner([shared] { return std::make_unique<gcode::TextLines>(*shared, "p.ngc"); }, machine,
@@ -55,7 +55,7 @@ class WorldCard {
     rest();
     return end;
   }
-  // Steps in flight, and the swing of the carriages.
+  // Waits for steps in flight and for the oscillation of the carriages.
   void rest() { engine.wait(kCardClock / 2); }
 
   World world;

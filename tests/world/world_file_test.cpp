@@ -1,4 +1,4 @@
-// World files and scripts: what the default says, and that each error names its file and line and what is right.
+// World files and scripts: the contents of the default, and errors that name file, line and the right form.
 #include "trammel/world/world_file.hpp"
 
 #include <gmock/gmock.h>

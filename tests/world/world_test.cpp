@@ -1,4 +1,4 @@
-// The world alone, without a card: pins that follow carriages, buttons and events, and the promise of quiet_until().
+// The world alone, without a card: pins follow carriages, buttons and events, and quiet_until() keeps its promise.
 #include "trammel/world/world.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 constexpr std::uint32_t kClock = 1'000'000;
 
-// Two axes of 80 pulses a mm; the switches of the first at -1 and +5 mm, a stop behind each.
+// Two axes with 80 pulses per mm. The switches of the first axis are at -1 and +5 mm, each with a stop behind it.
 Description two_axes() {
   Description d;
   AxisDescription axis;
@@ -49,7 +49,7 @@ std::string error_of(const std::function<void(Description&)>& change) {
   return "none";
 }
 
-// `pulses` at an even pace from the world's time on.
+// Makes `pulses` at an even rate, beginning at the present time of the world.
 void run_pulses(World& world, unsigned axis, int pulses, std::uint64_t clocks_a_pulse) {
   for (int n = 0; n < std::abs(pulses); ++n) {
     world.pulse(world.now() + clocks_a_pulse, axis, pulses < 0 ? -1 : +1);
@@ -59,7 +59,7 @@ void run_pulses(World& world, unsigned axis, int pulses, std::uint64_t clocks_a_
 TEST(World, AtRestTheLevelsAreThoseOfItsContacts) {
   const World world(two_axes(), kClock);
   EXPECT_EQ(world.wired(), 0b11000111U);
-  // Closed is 0: the two limits are, the others are not.
+  // A closed contact reads 0: the two limits are closed, the others are open.
   EXPECT_EQ(world.levels(), 0b11000100U);
   EXPECT_FALSE(world.emergency_stop());
   EXPECT_TRUE(world.has_emergency_stop());
@@ -78,10 +78,10 @@ TEST(World, ACarriagePressesItsSwitchAndReleasesItFurtherBack) {
   EXPECT_THAT(world.pressed(), ::testing::ElementsAre("plus"));
   EXPECT_EQ(world.levels(), 0b11000110U);
   EXPECT_EQ(world.carriage(0).place(), 402);
-  run_pulses(world, 0, -8, 2000);  // at 394
+  run_pulses(world, 0, -8, 2000);  // at pulse 394
   world.run_to(world.now() + 100'000);
   EXPECT_TRUE(world.pressed("plus"));
-  run_pulses(world, 0, -4, 2000);  // at 390
+  run_pulses(world, 0, -4, 2000);  // at pulse 390
   world.run_to(world.now() + 100'000);
   EXPECT_FALSE(world.pressed("plus"));
   EXPECT_EQ(world.levels(), 0b11000100U);
@@ -134,7 +134,7 @@ TEST(World, WithoutPowerCarriagesStay) {
   EXPECT_EQ(world.carriage(0).place(), 20);
 }
 
-// As behind a safety relay with a delay: until then the motors hold, and pulses move the carriages.
+// As with a delayed safety relay: until the delay ends the motors are powered and pulses move the carriages.
 TEST(World, ThePowerGoesBehindTheDelayOfItsButton) {
   Description d = two_axes();
   d.buttons[0].power_delay = 0.1;
@@ -144,7 +144,7 @@ TEST(World, ThePowerGoesBehindTheDelayOfItsButton) {
   EXPECT_LE(world.quiet_until(), 100'000U);
   run_pulses(world, 0, 20, 1000);
   world.run_to(50'000);
-  world.press("estop");  // it is down already: the delay does not begin anew
+  world.press("estop");  // already pressed: the delay does not restart
   world.run_to(99'999);
   EXPECT_TRUE(world.carriage(0).motor().powered());
   EXPECT_EQ(world.carriage(0).place(), 20);
@@ -155,7 +155,7 @@ TEST(World, ThePowerGoesBehindTheDelayOfItsButton) {
   EXPECT_EQ(world.carriage(0).place(), 20);
   world.release("estop");
   EXPECT_TRUE(world.carriage(0).motor().powered());
-  world.press("estop");  // anew
+  world.press("estop");  // a new press
   EXPECT_TRUE(world.carriage(0).motor().powered());
   world.release("estop");
   world.run_to(world.now() + 500'000);
@@ -172,13 +172,13 @@ TEST(World, ADriveThatWatchesItsMotorRaisesItsAlarm) {
   EXPECT_TRUE(world.pressed("x_alarm"));
   EXPECT_EQ(world.levels() >> 7 & 1, 0U);
   world.run_to(world.now() + 1'000'000);
-  EXPECT_TRUE(world.pressed("x_alarm"));  // until somebody clears it
+  EXPECT_TRUE(world.pressed("x_alarm"));  // until it is cleared
   EXPECT_LT(world.carriage(0).place(), 26);
   EXPECT_LE(world.quiet_until() - world.now(), 1000U);
 }
 
-// The judge of the promise: pulses as they come, and pins looked at in each clock. None changes before quiet_until()
-// has said so, and what the world does is the same whether it is run in one piece or clock by clock.
+// Checks the promise of quiet_until(): with random pulses, the pins are compared in each clock. None changes earlier
+// than announced, and the result is the same if the world runs in one piece or clock by clock.
 TEST(World, NoPinChangesBeforeItSays) {
   for (const std::uint32_t clock_hz : {1'000U, 30'000U, 1'000'000U}) {
     test::Random random(clock_hz);

@@ -60,11 +60,11 @@ class Environment {
 
 TEST(Checker, ClocksOfAllCheckersAreAdded) {
   const std::uint64_t before = trammel::lockstep::compared();
-  for (const std::uint64_t clocks : {3, 4}) {
+  for (const std::uint64_t clocks : {3U, 4U}) {
     Checker checker("dut", 1);
     for (std::uint64_t i = 0; i < clocks; ++i) checker.next_cycle();
   }
-  EXPECT_EQ(trammel::lockstep::compared() - before, 7);
+  EXPECT_EQ(trammel::lockstep::compared() - before, 7U);
 }
 
 TEST(Checker, ReportNamesBlockCycleSignalValuesSeedAndEvents) {

@@ -1,4 +1,4 @@
-// Uses a header and a symbol of each library; fails if a line does not arrive.
+// Uses a header and a symbol of each library; fails if a line does not reach its end point.
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -19,7 +19,7 @@ int main() {
   const driver::Snapshot snapshot = card.read_snapshot();
   std::printf("%s: x %d, y %d\n", std::string(card_map::find_register(card_map::reg::kMagic).entry->name).c_str(),
               snapshot.position[0], snapshot.position[1]);
-  // The same line in a machine, slowly: its carriages follow.
+  // The same line with a simulated machine, slow enough for its carriages to follow.
   world::World machine(world::default_world(), 1'000'000);
   world::EngineInWorld in_machine(sim::make_model_engine({}), machine);
   driver::Card moved = driver::Card::open(in_machine);

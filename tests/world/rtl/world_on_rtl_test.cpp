@@ -17,7 +17,7 @@ std::unique_ptr<sim::Engine> rtl_card() {
   return sim::make_engine(options);
 }
 
-// Into the switch at +2 mm, and back; then the button.
+// Moves into the switch at +2 mm and back; then the emergency stop is pressed.
 TEST(WorldOnRtl, LimitAndEmergencyStopAsOnTheModel) {
   const std::string text = "events = [\"at 900 ms press estop\"]\n" + changed_world("above = 300", "above = 2");
   WorldCard rtl(text, rtl_card());
