@@ -1,4 +1,4 @@
-# LinuxCNC's modules: built where its headers and tools are (scripts/setup --linuxcnc), or where they are asked for.
+# LinuxCNC's modules: built if its headers and tools are installed (scripts/setup --linuxcnc), or if they are requested.
 find_program(TRAMMEL_HALCOMPILE halcompile)
 find_path(TRAMMEL_LINUXCNC_INCLUDE hal.h PATHS /usr/include/linuxcnc NO_DEFAULT_PATH)
 set(linuxcnc_found OFF)
