@@ -12,7 +12,7 @@ if(TRAMMEL_LINUXCNC AND NOT linuxcnc_found)
 endif()
 
 # trammel_linuxcnc_module(NAME SOURCE [flags ...]): NAME.so in ${CMAKE_BINARY_DIR}/linuxcnc, by LinuxCNC's own make rules.
-# halcompile --compile works in a temporary folder, where the sources' includes are not found.
+# Not halcompile --compile, which works in a temporary folder, so that the sources' includes are not found.
 function(trammel_linuxcnc_module name source)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${name}")
   set(module "${CMAKE_BINARY_DIR}/linuxcnc/${name}.so")

@@ -13,7 +13,7 @@
     wire BOX.PIN PART ... GND     or one that ends in a symbol: GND, or a supply as "+5 V"
 
 PART is R "TEXT", NC "TEXT" (a contact that opens), NO "TEXT", FUSE "TEXT", or hangs off the wire: `up R "TEXT" "+3.3 V"` or
-`down C "TEXT" GND`. In a label @BOARD.SIGNAL stands for the place of the pin in boards/BOARD/board.toml. Lengths are pixels.
+`down C "TEXT" GND`. In a label @BOARD.SIGNAL gives the place of the pin in boards/BOARD/board.toml. Lengths are pixels.
 
 A drawing that would be unclear is an error: wires of two nets on each other, parts on wires or boxes, an unknown
 pin."""

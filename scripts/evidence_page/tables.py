@@ -90,7 +90,7 @@ def killed(mutants: dict, row: dict) -> str:
 
 
 def covered(coverage: dict, module: str, kind: str) -> str:
-    """Covered of all, and those that are waived; wires alone have no line and no branch."""
+    """Covered points out of all, and the waived ones. Modules with only wires have no lines and no branches."""
     if module not in coverage:
         return '<span class="none">not recorded</span>'
     points = coverage[module].get(kind)

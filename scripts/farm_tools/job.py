@@ -37,7 +37,7 @@ class Job:
         return self.limit or max(600, int(5 * self.seconds))
 
     def text(self) -> str:
-        """The command as somebody would type it."""
+        """The command as a user would type it."""
         shown = [f"build/{self.tests}" if self.tests and word == WORK else word.replace(WORK, f"build/farm/work/{self.id}")
                  for word in self.command]
         quoted = [f"'{word}'" if any(c in word for c in " |*()[]$\"") else word for word in shown]

@@ -1,4 +1,4 @@
-"""The fields of a record, its file, and what is refused in it."""
+"""The fields of a record, its file, and the checks of its values."""
 
 import json
 import os
