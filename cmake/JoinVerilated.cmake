@@ -1,5 +1,5 @@
-# cmake -D DIR=... -D PREFIX=Vx [-D ANY_EVENT=ON] -P: joins the files that Verilator wrote into Vx__joined.cc. Their names hold hashes, so
-# a build cannot know them beforehand. The file also gets the model's rising_edge().
+# cmake -D DIR=... -D PREFIX=Vx [-D ANY_EVENT=ON] -P: joins the files that Verilator wrote into Vx__joined.cc. Their
+# names contain hashes, so a build cannot know them in advance. The joined file also gets the model's rising_edge().
 file(GLOB sources "${DIR}/${PREFIX}*.cpp")
 list(SORT sources)
 set(fast "")
@@ -9,7 +9,8 @@ set(fast_text "")
 foreach(source IN LISTS sources)
   cmake_path(GET source FILENAME name)
   file(READ "${source}" text)
-  # Counters of coverage are atomic, though a model is run by one thread at a time: the locked addition takes most of the run.
+  # Coverage counters are atomic although only one thread at a time runs a model, and the locked addition takes most of
+  # the run time. So they become plain additions.
   if(text MATCHES "__Vcoverage")
     string(REGEX REPLACE "(vlSymsp->__Vcoverage\\[[0-9]+\\])\\.fetch_add\\(1, std::memory_order_relaxed\\)"
       "\\1.store(\\1.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed)" text "${text}")
@@ -17,7 +18,7 @@ foreach(source IN LISTS sources)
   endif()
   if(name MATCHES "__(Slow|Syms|ConstPool)")
     string(APPEND slow "#include \"${name}\"\n")
-    # Verilator writes down the events that it triggers on, for its own debugging.
+    # Verilator lists its trigger events in the code, for its own debugging.
     string(REGEX MATCHALL "@\\([a-z]+edge [^)]*\\)" found "${text}")
     list(APPEND events ${found})
   else()
@@ -26,19 +27,21 @@ foreach(source IN LISTS sources)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES events)
-# Beside the clock the emergency stop's pin may set a flip-flop: each edge evaluates it, so that a press counts clock by clock.
+# Besides the clock, only the emergency stop's pin may trigger: it sets a flip-flop. Each clock edge evaluates that
+# flip-flop, so a press takes effect at a clock edge.
 list(FILTER events EXCLUDE REGEX "^@\\((posedge clk_i or )?posedge [a-z_.]*pressed( or posedge clk_i)?\\)$")
 if(NOT ANY_EVENT AND NOT events STREQUAL "@(posedge clk_i)")
   message(FATAL_ERROR "${PREFIX} triggers on \"${events}\"; rising_edge.hpp evaluates @(posedge clk_i) only")
 endif()
-# A card's clock is more code than a first-level instruction cache holds, and most of what its ifs guard is seldom done.
-# Compiled as unlikely it leaves the way that is gone in each clock. Headers come before, since the keyword is replaced.
+# A clock of the card executes more code than fits in a first-level instruction cache, and most of its branches are
+# rarely taken. Marked as unlikely, they move out of the common path. Headers are included first, because a macro
+# replaces the keyword `if`.
 string(REGEX MATCHALL "#include \"[^\"]*\"" headers "${fast_text}")
 list(REMOVE_DUPLICATES headers)
 list(JOIN headers "\n" headers)
 string(PREPEND fast "${headers}\n#define if(...) if (__builtin_expect(!!(__VA_ARGS__), 0))\n")
 string(APPEND fast "#undef if\n")
-# Where Verilator's functions are those that rising_edge.hpp knows, they are called without eval().
+# If Verilator's functions are those that rising_edge.hpp knows, rising_edge() calls them directly instead of eval().
 set(root "${PREFIX}___024root")
 string(APPEND fast "#include \"rising_edge.hpp\"\n")
 string(FIND "${fast_text}" "vlSelf->__VnbaTriggered.at(0U)" nba)

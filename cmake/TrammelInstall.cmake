@@ -1,9 +1,9 @@
-# What is installed, a component each, every one of use without the others:
+# The components of the installation, each usable without the others:
 #   trammel_development  libraries, headers, CMake package, pkg-config files; a consumer needs no Python, RTL or Verilator
 #   trammel_command      the trammel command
 #   trammel_rtl          the card's sources, with their file list, FuseSoC core and lint waivers
-#   trammel_python       Python's package, where it is built (bindings/python)
-#   trammel_machine      the default machine file and the default world, to be changed
+#   trammel_python       Python's package, if it is built (bindings/python)
+#   trammel_machine      the default machine file and the default world, as templates
 #   trammel_licence
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -36,7 +36,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/sim/include/"
   "${PROJECT_SOURCE_DIR}/world/include/"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp"
-  PATTERN "lockstep.hpp" EXCLUDE PATTERN "engines.hpp" EXCLUDE)  # of no use without the Verilated card
+  PATTERN "lockstep.hpp" EXCLUDE PATTERN "engines.hpp" EXCLUDE)  # need the Verilated card
 install(EXPORT trammel-targets NAMESPACE trammel:: DESTINATION "${trammel_package_dir}"
   COMPONENT trammel_development)
 
@@ -59,7 +59,7 @@ trammel_write_pkg_config(trammel "Trammel stepper-motion card: driver and simula
 
 set(trammel_data_dir "${CMAKE_INSTALL_DATADIR}/trammel")
 
-# In the folders that the file list names.
+# The files keep the folders that the file list has.
 file(STRINGS "${PROJECT_SOURCE_DIR}/rtl/trammel.f" sources REGEX "^[^/].*\\.sv$")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/rtl/trammel.f")
 foreach(file IN ITEMS trammel.f trammel.core lint/waivers.vlt LISTS sources)

@@ -1,4 +1,4 @@
-# LinuxCNC's modules: built where its headers and tools are (scripts/setup --linuxcnc), or where they are asked for.
+# LinuxCNC's modules: built if its headers and tools are installed (scripts/setup --linuxcnc), or if they are requested.
 find_program(TRAMMEL_HALCOMPILE halcompile)
 find_path(TRAMMEL_LINUXCNC_INCLUDE hal.h PATHS /usr/include/linuxcnc NO_DEFAULT_PATH)
 set(linuxcnc_found OFF)
@@ -12,7 +12,7 @@ if(TRAMMEL_LINUXCNC AND NOT linuxcnc_found)
 endif()
 
 # trammel_linuxcnc_module(NAME SOURCE [flags ...]): NAME.so in ${CMAKE_BINARY_DIR}/linuxcnc, by LinuxCNC's own make rules.
-# halcompile --compile works in a temporary folder, where the sources' includes are not found.
+# Not halcompile --compile, which works in a temporary folder, so that the sources' includes are not found.
 function(trammel_linuxcnc_module name source)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${name}")
   set(module "${CMAKE_BINARY_DIR}/linuxcnc/${name}.so")

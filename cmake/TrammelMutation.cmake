@@ -1,5 +1,5 @@
-# Judges over the RTL's mutants: each lockstep once more, over one instrumented copy of the RTL that holds all mutants.
-# scripts/mutate runs them. Python with pyslang writes the copy, so this is built only where TRAMMEL_MUTATION asks for it.
+# Judges of the RTL's mutants: each lockstep again, over one instrumented copy of the RTL that contains all mutants.
+# scripts/mutate runs them. Python with pyslang writes the copy, so they are built only with TRAMMEL_MUTATION.
 find_program(TRAMMEL_PYTHON NAMES python3 HINTS "${PROJECT_SOURCE_DIR}/.venv/bin" NO_DEFAULT_PATH)
 find_program(TRAMMEL_PYTHON NAMES python3 REQUIRED)
 
@@ -26,14 +26,16 @@ function(trammel_add_judge name)
   set(target mutation_${name})
   set(copies ${A_SOURCES})
   list(TRANSFORM copies PREPEND "${A_OUT}/")
-  # A mutant may leave a signal unused or compare with a constant that is out of reach: the sound sources are linted.
+  # No lint warnings here: a mutant may leave a signal unused or compare with an unreachable constant. The sound sources
+  # are linted elsewhere.
   if(NOT DEFINED A_LEVEL)
     set(A_LEVEL 1)
   endif()
   trammel_verilate(${target} LEVEL ${A_LEVEL} PREFIX ${A_PREFIX} TOP ${A_TOP} SOURCES ${copies}
                    ARGS -Wno-lint -Wno-style -Wno-fatal ${A_ARGS})
   target_link_libraries(${target} PRIVATE trammel_mutant_number)
-  # The header must be the one that the test knows, but for what calls from SystemVerilog into C include.
+  # The header must equal the one that the test was compiled against, except for the includes of calls from
+  # SystemVerilog into C.
   get_property(copy_dir GLOBAL PROPERTY TRAMMEL_VERILATED_${target}_${A_PREFIX})
   get_property(sound_dir GLOBAL PROPERTY TRAMMEL_VERILATED_${A_SOUND}_${A_PREFIX})
   add_custom_command(TARGET ${target} PRE_LINK VERBATIM
@@ -41,8 +43,8 @@ function(trammel_add_judge name)
 endfunction()
 
 # trammel_judge_entry(out name SOURCES a.sv ... [EXECUTABLE target] [ARGUMENTS ...] [LENGTH factor] [LAST_RESORT])
-# The judge's line of judges.json. EXECUTABLE is mutation_<name> by itself, ARGUMENTS are GoogleTest's, LENGTH is that of
-# the random scenarios. LAST_RESORT: tries no mutant that is listed as equivalent.
+# Returns the judge's line of judges.json. EXECUTABLE defaults to mutation_<name>; ARGUMENTS go to GoogleTest; LENGTH is
+# a factor for the random scenarios. LAST_RESORT: the judge is not tried on mutants listed as equivalent.
 function(trammel_judge_entry out name)
   cmake_parse_arguments(A "LAST_RESORT" "EXECUTABLE;LENGTH" "SOURCES;ARGUMENTS" ${ARGN})
   set(last_resort false)

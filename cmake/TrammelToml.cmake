@@ -1,4 +1,4 @@
-# toml11::toml11 in the folder that includes this: headers alone. Debian's package says that it is for 64-bit hosts.
+# toml11::toml11, header-only, for the folder that includes this. Debian's package claims to be for 64-bit hosts only.
 find_package(toml11 QUIET)
 if(NOT TARGET toml11::toml11)
   find_path(TRAMMEL_TOML11_INCLUDE_DIR toml.hpp REQUIRED)

@@ -10,12 +10,13 @@ set(TRAMMEL_RTL_PACKAGES "${TRAMMEL_CARD_SOURCES}")
 list(FILTER TRAMMEL_RTL_PACKAGES INCLUDE REGEX "_pkg\\.sv$")
 list(FILTER TRAMMEL_CARD_SOURCES EXCLUDE REGEX "_pkg\\.sv$")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${TRAMMEL_RTL_DIR}/trammel.f")
-# Every bit without a value begins at random (Simulated gives the seed): zeros would hide a missing reset.
+# Every bit without a reset value starts at random (class Simulated gives the seed), because zeros would hide a missing
+# reset.
 set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign unique --x-initial unique
     --noassert)
 
-# Points that Verilator counts in the RTL (docs/developer/coverage.md). A run writes them where TRAMMEL_RTL_COVERAGE of its
-# environment names a folder: sim/include/trammel/sim/lockstep.hpp.
+# Points that Verilator counts in the RTL (docs/developer/coverage.md). A run writes them to the folder that the
+# environment variable TRAMMEL_RTL_COVERAGE names: sim/include/trammel/sim/lockstep.hpp.
 set(TRAMMEL_RTL_COVERAGE "" CACHE STRING "RTL coverage that Verilator counts: a list of line (with branches) and toggle; empty: none")
 set(TRAMMEL_VM_COVERAGE 0)
 set(coverage_run_time "")
@@ -23,8 +24,8 @@ foreach(kind IN LISTS TRAMMEL_RTL_COVERAGE)
   if(NOT kind MATCHES "^(line|toggle)$")
     message(FATAL_ERROR "TRAMMEL_RTL_COVERAGE: ${kind} is neither line nor toggle")
   endif()
-  # Verilator 5.006 parts an if in clocked code from its counter, and the counter then comes before the condition, if that
-  # calls a function: the branch would never be covered, and its else always.
+  # Verilator 5.006 separates an if in clocked code from its counter. If the condition calls a function, the counter
+  # then comes before it: the branch would never be covered, and its else always.
   list(APPEND TRAMMEL_VERILATOR_ARGS --coverage-${kind} -fno-split)
   set(TRAMMEL_VM_COVERAGE 1)
   set(coverage_run_time "${VERILATOR_ROOT}/include/verilated_cov.cpp")
@@ -39,14 +40,15 @@ target_compile_options(trammel_verilated PRIVATE -w)
 target_include_directories(trammel_verilated SYSTEM PUBLIC "${VERILATOR_ROOT}/include" "${VERILATOR_ROOT}/include/vltstd")
 target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
 
-# What Verilator writes is not the project's: no warnings from it, and neither sanitizers nor their lines in it, with which
-# each card takes minutes to compile.
+# Code that Verilator generates is not the project's, so it has no warnings. It has no sanitizers and no debug lines
+# either, because with these each card takes minutes to compile.
 set(TRAMMEL_VERILATED_OPTIONS -w)
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
   list(APPEND TRAMMEL_VERILATED_OPTIONS -fno-sanitize=all -g0)
 endif()
 
-# Its headers, compiled once for each level at which what Verilator writes is compiled: half the time of compiling a block.
+# Verilator's headers, precompiled once for each optimisation level of generated code: they take half the compile time
+# of a block.
 set(TRAMMEL_VERILATED_LEVELS 0 1 3)
 file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/verilated_headers.cpp" CONTENT "// Headers alone.\n")
 foreach(level IN LISTS TRAMMEL_VERILATED_LEVELS)
@@ -56,13 +58,12 @@ foreach(level IN LISTS TRAMMEL_VERILATED_LEVELS)
   target_precompile_headers(trammel_verilated_headers_${level} PRIVATE <verilated.h>)
 endforeach()
 
-# trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE] [ANY_EVENT] [LEVEL 0|1|3])
-# ANY_EVENT: something happens at other edges than the clock's, and both are evaluated by eval().
-# Sources are relative to rtl/ unless absolute. The package of the card map always comes first.
-# Verilator runs as a step of the build (its own verilate() runs it while configuring, and again when building), and all
-# that it writes is compiled as one file of the object library <target>_<Vx>, whose objects are the target's.
-# LEVEL is the compiler's -O: 3 by itself, quick to run; 1 or 0 is quick to compile instead.
-# The folder of Vx.h is left in the global property TRAMMEL_VERILATED_<target>_<Vx>.
+# trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE] [ANY_EVENT] [LEVEL 0|1|3]) ANY_EVENT:
+# the block also triggers on edges other than the clock's, so eval() evaluates both edges. Sources are relative to rtl/
+# unless absolute. The package of the card map always comes first. Verilator runs as a step of the build (its own
+# verilate() runs it while configuring, and again when building). All files that it writes are compiled as one file of
+# the object library <target>_<Vx>, whose objects belong to the target. LEVEL is the compiler's -O: 3, the default, is
+# fast to run; 1 or 0 is fast to compile. The global property TRAMMEL_VERILATED_<target>_<Vx> has the folder of Vx.h.
 function(trammel_verilate target)
   cmake_parse_arguments(A "TRACE;ANY_EVENT" "PREFIX;TOP;LEVEL" "SOURCES;ARGS" ${ARGN})
   if(NOT DEFINED A_LEVEL)
@@ -104,11 +105,11 @@ endfunction()
 
 # trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [HARNESS top.sv] [ARGS ...] [DEFINITIONS ...]
 #                      [INCLUDES ...] [INSIDE inside.cpp] [ANY_EVENT] [LEVEL 0|1|3])
-# Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
-# The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
-# bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
-# compiled for each copy. LEVEL is 1 by itself, since few run long enough for more. DEFINITIONS and INCLUDES
-# are the test's. HARNESS is a top that joins several blocks for their lockstep alone, beside the test.
+# Builds lockstep_<name>: the test runs Vdut (the block) in lockstep with its golden model. The test is compiled once
+# (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded bug, so it may use Vdut.h
+# but no other file that Verilator writes. A source that uses one is given as INSIDE and is compiled for each copy.
+# LEVEL is 1 by default, because few tests run long enough for more. DEFINITIONS and INCLUDES apply to the test. HARNESS
+# is a top, in the test's folder, that connects several blocks only for their lockstep.
 function(trammel_add_lockstep name)
   cmake_parse_arguments(A "ANY_EVENT" "TOP;TEST;INSIDE;HARNESS;LEVEL" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
   set(target lockstep_${name})
@@ -139,7 +140,7 @@ function(trammel_add_lockstep name)
   trammel_record_lockstep(${name})
 endfunction()
 
-# For the table of judges (scripts/rtl/judges): what a lockstep clocks.
+# For the table of judges (scripts/rtl/judges): the sources that a lockstep clocks.
 function(trammel_record_lockstep name)
   get_property(top GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_TOP)
   get_property(sources GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_SOURCES)
@@ -148,7 +149,7 @@ function(trammel_record_lockstep name)
     "\n    {\"name\": \"${name}\", \"top\": \"${top}\", \"sources\": [\"${sources}\"]},")
 endfunction()
 
-# Writes what was recorded of locksteps and seeded bugs, once all of them are known.
+# Writes the recorded data about locksteps and seeded bugs, after all of them are declared.
 function(trammel_write_judges file)
   get_property(locksteps GLOBAL PROPERTY TRAMMEL_LOCKSTEPS_JSON)
   get_property(bugs GLOBAL PROPERTY TRAMMEL_SEEDED_BUGS_JSON)
@@ -165,7 +166,7 @@ function(trammel_lockstep_test executable)
   add_library(${executable}_test OBJECT ${A_TEST})
   trammel_lockstep_target(${executable}_test)
   target_include_directories(${executable}_test SYSTEM PRIVATE "${dir}")
-  # The header is made by the target's rule; where that is in another folder, the target is waited for.
+  # The target's rule makes the header. If that target is in another folder, the test depends on the target.
   get_target_property(folder ${A_HEADERS_OF} SOURCE_DIR)
   if(folder STREQUAL CMAKE_CURRENT_SOURCE_DIR)
     add_custom_target(${executable}_header DEPENDS "${dir}/${A_PREFIX}.h")
@@ -179,7 +180,7 @@ endfunction()
 # trammel_add_seeded_bug(name bug FILE f.sv FROM "text" TO "text" [FROM "text" TO "text" ...] [FILE g.sv FROM ...])
 # The same lockstep over a copy of the block in which each text FROM (exactly once in its FILE) reads TO: the test
 # seeded_bug.<name>.<bug>, which passes only when the lockstep reports a mismatch. ONLY "filter", last, names the lockstep's
-# tests that are run, where a few show the bug and the rest takes long.
+# tests that run, if a few show the bug and the others take long.
 function(trammel_add_seeded_bug name bug)
   foreach(var TOP PREFIX SOURCES ARGS INSIDE SOUND HOW)
     get_property(L_${var} GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_${var})
@@ -188,7 +189,8 @@ function(trammel_add_seeded_bug name bug)
   set(dir "${CMAKE_CURRENT_BINARY_DIR}/seeded/${name}_${bug}")
   set(file "")
   set(only "")
-  # In steps of two and by number: the texts may hold what CMake's lists are made of.
+  # The loop counts indices in steps of two, because the texts may contain semicolons, which separate CMake's list
+  # elements.
   foreach(i RANGE 2 ${ARGC} 2)
     math(EXPR next "${i} + 1")
     if(i EQUAL ARGC OR "${ARGV${i}}" MATCHES "^(FILE|ONLY)$")
@@ -229,12 +231,13 @@ function(trammel_add_seeded_bug name bug)
     return()
   endif()
   add_executable(${target} ${L_INSIDE})
-  # A seeded bug may leave a signal unused: that warning must not keep the lockstep from judging it. The sources proper are
-  # linted by the block's own lockstep, with every warning an error. -O0: compiling takes a quarter of the time of -O1, and
+  # A seeded bug may leave a signal unused, and that warning must not stop the lockstep from judging it. The block's own
+  # lockstep lints the unchanged sources, with every warning an error. -O0 compiles in a quarter of the time of -O1, and
   # most bugs show within milliseconds.
   trammel_verilate(${target} ${L_HOW} LEVEL 0 PREFIX ${L_PREFIX} TOP ${L_TOP} SOURCES ${L_SOURCES} ARGS -Wno-lint ${L_ARGS})
   trammel_same_header(${target} ${L_SOUND} ${L_PREFIX})
-  # Objects come before libraries: where a library holds the sound copy (the card's does), this one goes before it.
+  # Objects precede libraries in linking. So this copy takes precedence over a sound copy in a library, such as the
+  # card's.
   target_link_libraries(${target} PRIVATE lockstep_${name}_test)
   add_test(NAME seeded_bug.${name}.${bug} COMMAND ${target} --seeded-bug ${only})
   set_tests_properties(seeded_bug.${name}.${bug} PROPERTIES LABELS seeded_bug)

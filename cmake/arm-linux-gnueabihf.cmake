@@ -1,12 +1,12 @@
-# 32-bit ARM with Debian's cross compiler; what is built runs under qemu-user (the preset armhf). scripts/setup installs
+# 32-bit ARM with Debian's cross compiler; the programs run under qemu-user (the preset armhf). scripts/setup installs
 # both, and unpacks libraries of that architecture into build/armhf-packages.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR armv7)
 set(CMAKE_C_COMPILER arm-linux-gnueabihf-gcc)
 set(CMAKE_CXX_COMPILER arm-linux-gnueabihf-g++)
-# VFPv4 has fused multiply-add: where the compiler contracted a * b + c, the planner's numbers would change here. (g++ does so
-# with -fexpensive-optimizations, which the preset adds to -O1.) -Wno-psabi: g++ notes that it passes some arguments otherwise
-# than g++ 6 did. -Wno-maybe-uninitialized: at -O1 it warns of std::optional.
+# VFPv4 has fused multiply-add, so the planner's numbers would change here if the compiler contracted a * b + c. (g++
+# does so with -fexpensive-optimizations, which the preset adds to -O1.) -Wno-psabi: g++ notes that it passes some
+# arguments differently from g++ 6. -Wno-maybe-uninitialized: at -O1 it warns about std::optional.
 set(CMAKE_C_FLAGS_INIT "-mfpu=neon-vfpv4")
 set(CMAKE_CXX_FLAGS_INIT "-mfpu=neon-vfpv4 -Wno-psabi -Wno-maybe-uninitialized")
 set(CMAKE_FIND_ROOT_PATH /usr/arm-linux-gnueabihf "${CMAKE_CURRENT_LIST_DIR}/../build/armhf-packages")

@@ -1,7 +1,7 @@
-# Shared by the scripts: where the project lies, what it needs from the distribution, how it says what it does.
+# Shared by the scripts: the project's folder, the packages of the distribution that it needs, progress messages.
 # Sourced, not run.
 set -euo pipefail
-caller_dir=$PWD  # what the command line names is meant from there
+caller_dir=$PWD  # paths on the command line are relative to this folder
 project_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$project_dir"
 
@@ -19,27 +19,28 @@ debian_packages=(
   libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev libsystemc-dev
   clang-14 libclang-rt-14-dev  # libFuzzer
 )
-# The browser that the report's page is tested in.
+# The browser for the tests of the report's page.
 debian_packages_page=(chromium)
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format universal-ctags yosys)
 # The documentation as a site.
 debian_packages_site=(doxygen graphviz)
-# LinuxCNC, whose interpreter tests compare the G-code reader with, and which moves the card; networks of their own for
-# the card and for its driver hm2_eth.
+# LinuxCNC: tests compare the G-code reader with its interpreter, and it drives the card. iproute2: separate network
+# namespaces for the card and for LinuxCNC's driver hm2_eth.
 debian_packages_linuxcnc=(linuxcnc-uspace linuxcnc-uspace-dev iproute2)
-# A sender with windows, and a screen for it.
+# A sender with a graphical interface, and a virtual screen for it.
 debian_packages_senders=(bcnc python3-numpy xvfb)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
-# A cluster of one node, for trying scripts/farm slurm.
+# A cluster of one node, to test scripts/farm slurm.
 debian_packages_farm=(slurm-wlm munge)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
 armhf_libraries=(libfmt9 libfmt-dev libtoml11-dev nlohmann-json3-dev libgtest-dev libgmock-dev librapidcheck-dev)
 
-apt_lock_timeout=600  # seconds: how long another apt may run
+apt_lock_timeout=600  # seconds to wait for another apt to end
 
-# update_packages [COMMAND ...]: apt-get update, by sudo for instance. It has no option that waits for the lock of the lists.
+# update_packages [COMMAND ...]: apt-get update, run by COMMAND (sudo, for instance). apt-get has no option that waits
+# for the lock of the package lists, so this function retries.
 update_packages() {
   local until=$((SECONDS + apt_lock_timeout)) printed
   until printed=$("$@" env LC_ALL=C apt-get update -qq 2>&1); do
@@ -67,8 +68,9 @@ install_debian() {
     "${missing[@]}" >/dev/null
 }
 
-# What the tests on 32-bit ARM need: compiler and emulator, and the libraries of that architecture, which are unpacked into
-# build/armhf-packages. apt works on lists of its own there, so that the system does not become one of two architectures.
+# Installs compiler and emulator for the tests on 32-bit ARM, and unpacks the libraries of that architecture into
+# build/armhf-packages. apt uses separate package lists there, so that the system does not become a multi-architecture
+# one.
 install_armhf() {
   install_debian "${debian_packages_armhf[@]}"
   local packages=$project_dir/build/armhf-packages wanted="${armhf_libraries[*]}"
@@ -79,7 +81,7 @@ install_armhf() {
   touch "$packages/status"
   local apt=(apt-get -qq -o APT::Architecture=armhf -o APT::Architectures::=armhf -o APT::Sandbox::User=
              -o Dir::State::lists="$packages/lists" -o Dir::State::status="$packages/status" -o Dir::Cache="$packages/cache")
-  # A list of another part of the archive may be missing or out of step: what counts is whether the packages come.
+  # Lists of other parts of the archive may be missing or outdated. Only a failed download of the packages matters.
   "${apt[@]}" update >"$packages/log" 2>&1 || say "not every package list came ($packages/log); going on with those that did"
   if ! (cd "$packages" && "${apt[@]}" download "${armhf_libraries[@]}" >>log 2>&1); then
     say "they did not come, and without them the tests on 32-bit ARM cannot run: $packages/log says why"
@@ -91,7 +93,8 @@ install_armhf() {
   echo "$wanted" >"$packages/unpacked"
 }
 
-# install_python FILE: the pinned Python tools of a requirements file, in .venv; again when the file changes.
+# install_python FILE: installs the pinned Python tools of a requirements file into .venv; repeats when the file
+# changes.
 install_python() {
   install_debian python3-venv
   local stamp=.venv/.$1
@@ -103,8 +106,8 @@ install_python() {
   fi
 }
 
-# find_npm: npm with Node 18 or newer as the command of the array npm: from PATH, else from PyPI into .venv; Debian's npm is
-# not asked for: it conflicts with any newer Node.
+# find_npm: sets the array npm to the command of an npm with Node 18 or newer: the one in PATH, else one from PyPI,
+# installed into .venv. Debian's npm is not installed, because it conflicts with any newer Node.
 find_npm() {
   local wheel
   npm=(npm)
@@ -116,7 +119,7 @@ find_npm() {
   fi
 }
 
-# install_page: what the report's page is made of, in web/node_modules, pinned by web/package-lock.json.
+# install_page: installs the packages of the report's page into web/node_modules, pinned by web/package-lock.json.
 install_page() {
   find_npm
   if ! cmp -s web/package-lock.json web/node_modules/.trammel-lock 2>/dev/null; then
@@ -126,8 +129,8 @@ install_page() {
   fi
 }
 
-# install_senders: senders written elsewhere that are small enough for every run of the tests: from PyPI in .venv, from npm
-# in build/gcnc, pinned by tests/senders/gcnc/package-lock.json.
+# install_senders: installs third-party senders that are small enough for every run of the tests: from PyPI into .venv,
+# from npm into build/gcnc, pinned by tests/senders/gcnc/package-lock.json.
 install_senders() {
   local folder=tests/senders/gcnc
   install_python requirements-senders.txt
@@ -141,7 +144,7 @@ install_senders() {
   fi
 }
 
-# Options for configuring beside the preset's; a script may add to them.
+# Options for configuring in addition to the preset's; a script may add to them.
 configure_options=()
 
 # build_release [arguments of cmake --build ...]
@@ -150,7 +153,7 @@ build_release() {
   install_page
   say "building"
   mkdir -p build
-  # Of the compiler that all of this is tried with; a newer one may warn of more.
+  # Warnings are errors only with the compiler that the project is tested with; a newer one may warn of more.
   [ "$(g++ -dumpversion)" != 12 ] || configure_options+=(-DTRAMMEL_WERROR=ON)
   cmake --preset release "${configure_options[@]}" >build/configure.log 2>&1 || { cat build/configure.log >&2; die "configuring failed"; }
   cmake --build --preset release "$@"

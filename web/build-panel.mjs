@@ -6,7 +6,7 @@ import { bundleScript, bundleStyle, hashOf, literal, text } from './bundle.mjs'
 const script = await bundleScript('src/panel/main.js')
 const style = await bundleStyle('src/panel/style.css')
 
-// Only this very script runs, and it speaks to the server that the page came from.
+// The content security policy allows only this script, and only connections to the server of the page.
 const policy = `default-src 'none'; script-src ${hashOf(script)}; style-src 'unsafe-inline'; img-src data:; connect-src 'self' ws:`
 const page = text('src/panel/page.html')
   .replace('{{policy}}', () => policy)

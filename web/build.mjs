@@ -1,4 +1,4 @@
-// Bundles the report's page and writes it as a C++ source: what comes before a report's data and what comes behind.
+// Bundles the report's page and writes it as a C++ source: the text before a report's data and the text after it.
 //   node build.mjs OUT.cpp
 import { writeFileSync } from 'node:fs'
 import { bundleScript, bundleStyle, hashOf, licencesOf, literal, text } from './bundle.mjs'
@@ -7,7 +7,8 @@ const packages = Object.keys(JSON.parse(text('package.json')).dependencies)
 const script = await bundleScript('src/main.js', { TRAMMEL_LICENCES: JSON.stringify(licencesOf(packages)) })
 const style = await bundleStyle('src/style.css')
 
-// Only this very script runs, and nothing is loaded: a page made of other people's programs needs a second lock.
+// The content security policy allows only this script and loads nothing. It is a second protection, because the page
+// shows third-party programs.
 const policy = `default-src 'none'; script-src ${hashOf(script)}; style-src 'unsafe-inline'; img-src data: blob:`
 const head = text('src/page.html')
   .replace('{{policy}}', () => policy)

@@ -1,4 +1,4 @@
-// What the bundlers of the pages share.
+// Code that the bundlers of the pages share.
 import { createHash } from 'node:crypto'
 import { readFileSync } from 'node:fs'
 import { build } from 'esbuild'
@@ -6,7 +6,7 @@ import { build } from 'esbuild'
 const here = (name) => new URL(name, import.meta.url)
 export const text = (name) => readFileSync(here(name), 'utf8')
 
-// What is inside a page, with the licence that each asks to be passed on.
+// The packages in a page, with the licences that must be passed on.
 export function licencesOf(packages) {
   const licences = packages.map((name) => {
     const { version, license } = JSON.parse(text(`node_modules/${name}/package.json`))
@@ -31,7 +31,7 @@ export async function bundleStyle(entry) {
 
 export const hashOf = (script) => `'sha256-${createHash('sha256').update(script).digest('base64')}'`
 
-// In pieces, so that no line of the source is endless.
+// In pieces, to limit the length of source lines.
 export function literal(string) {
   const bytes = Buffer.from(string, 'utf8')
   const lines = []

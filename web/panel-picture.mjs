@@ -1,6 +1,6 @@
 // Pictures of the panel in the middle of a program, on a simulated machine:
 //   node panel-picture.mjs TRAMMEL OUT.png [light|dark] [WIDTH HEIGHT]
-// CHROMIUM names the browser where it is not /usr/bin/chromium.
+// CHROMIUM names the browser if it is not /usr/bin/chromium.
 import { spawn } from 'node:child_process'
 import { readFileSync } from 'node:fs'
 import { once } from 'node:events'
@@ -13,7 +13,7 @@ if (!out) {
   process.exit(2)
 }
 const example = (name) => fileURLToPath(new URL(`../examples/${name}`, import.meta.url))
-// Grbl wants the end of a circle.
+// Grbl requires the end point of a circle.
 const program = readFileSync(example('first-part.ngc'), 'utf8').replace('G2 I-8', 'G2 X58 Y40 I-8')
 const server = spawn(trammel, ['panel', '--engine', 'model', '--machine', example('first-machine.toml'), '--world', 'default', '--listen', '127.0.0.1:0'], { stdio: ['ignore', 'pipe', 'ignore'] })
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox'] })

@@ -1,5 +1,5 @@
 // A picture of a report:  node picture.mjs REPORT.html OUT.png [light|dark] [SECONDS]
-// CHROMIUM names the browser where it is not /usr/bin/chromium.
+// CHROMIUM names the browser if it is not /usr/bin/chromium.
 import { resolve } from 'node:path'
 import { chromium } from 'playwright-core'
 
@@ -16,7 +16,7 @@ try {
   await page.goto(`file://${resolve(report)}`)
   await page.waitForFunction(() => document.documentElement.dataset.ready === 'true')
   if (seconds) await page.evaluate((at) => window.trammel.setCycle(at * window.trammel.run.clockHz), Number(seconds))
-  // The cursor asks for a frame, and the path for one of its own.
+  // The cursor requests a frame, and the path requests another one.
   for (let i = 0; i < 5; ++i) await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)))
   await page.screenshot({ path: out })
 } finally {

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""A SoC without a CPU for the Colorlight 5A-75B 7.0: LiteX's UART bridge on button and LED as master, the card as slave.
+"""A SoC without a CPU for the Colorlight 5A-75B 7.0: LiteX's UART bridge, on the pins of button and LED, is the master,
+and the card is the slave.
 
-Writes sources and scripts for Yosys and nextpnr into a folder; nothing is run. With --simulated the clock comes in at a pin, without
-a PLL, for a simulator that reads the generated Verilog."""
+Writes sources and scripts for Yosys and nextpnr into a folder, but runs none of them. With --simulated the clock comes
+from a pin instead of a PLL, for a simulator that reads the generated Verilog."""
 import argparse
 
 from litex.build.generic_platform import IOStandard, Pins, Subsignal
@@ -21,10 +22,10 @@ CARD_AT = 0x3000_0000
 CLOCK_HZ = 80_000_000
 BAUD = 115_200
 SIMULATED_BAUD = CLOCK_HZ // 16  # quick to simulate
-# STEP and DIR where docs/user/boards.md has them, as connector:pin.
+# STEP and DIR on the pins that docs/user/boards.md lists, as connector:pin.
 MOTORS = [("motors", 0, Subsignal("step", Pins("j1:0 j1:2 j1:5 j2:0")), Subsignal("dir", Pins("j1:1 j1:4 j1:6 j2:1")),
            IOStandard("LVCMOS33"))]
-# Any pins: nothing is placed.
+# Arbitrary pins, because this SoC is not placed.
 SIMULATED = [("clk", 0, Pins("A2")), ("rst", 0, Pins("A3")), ("serial", 0, Subsignal("tx", Pins("A4")), Subsignal("rx", Pins("A5"))),
              ("motors", 0, Subsignal("step", Pins("B1 B2 B3 B4")), Subsignal("dir", Pins("C1 C2 C3 C4")))]
 

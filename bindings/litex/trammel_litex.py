@@ -23,7 +23,8 @@ def add_sources(platform):
 
 
 class TrammelCard(LiteXModule):
-    """`parameters`: any of docs/reference/integration.md beside axes, inputs and outputs. `*_idle`: levels in reset, a bit a pin."""
+    """`parameters`: any of docs/reference/integration.md except axes, inputs and outputs. `*_idle`: levels during
+    reset, one bit per pin."""
 
     def __init__(self, platform, clock_hz, axes=4, inputs=4, outputs=4, step_idle=0, dir_idle=0, output_idle=0, emergency_stop_level=1,
                  **parameters):
@@ -40,7 +41,7 @@ class TrammelCard(LiteXModule):
         add_sources(platform)
         bus = self.bus
         address = Cat(C(0, 2), bus.adr[:10])
-        stall = Signal()  # of a pipelined bus
+        stall = Signal()  # only a pipelined bus uses it
         self.specials += Instance(
             "card_with_ports",
             p_Axes=axes, p_Inputs=inputs, p_Outputs=outputs, p_AxiLite=0, p_Wishbone=1,

@@ -1,1 +1,1 @@
-"""Boards: their descriptions, what is written from them, and their bitstreams (scripts/boards)."""
+"""Boards: their descriptions, the files generated from them, and their bitstreams (scripts/boards)."""

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from rtl.file_list import ROOT
 
 BOARDS = ROOT / "boards"
-RESET_SECONDS = 16e-6  # from the PLL's lock to the reset's end, at least
+RESET_SECONDS = 16e-6  # shortest time from the PLL's lock to the end of reset
 GROUPS = ("step", "dir", "output", "input")
 DEVICES = {"ice40": {"hx1k", "hx4k", "hx8k"}, "ecp5": {"12k", "25k", "45k", "85k"}}  # as the placers name them
-# What a machine file may say of inputs and outputs (docs/user/inputs.md, outputs.md); an axis's name stands before those of AXIS_ROLES.
+# Roles that a machine file can give to inputs and outputs (docs/user/inputs.md, outputs.md). Those of AXIS_ROLES follow
+# the name of an axis: "x_home".
 AXIS_ROLES = ("limit_minus", "limit_plus", "home", "drive_fault")
 INPUT_ROLES = {*(f"{axis}_{role}" for axis in "xyzabcuvwe" for role in AXIS_ROLES), "feed_hold", "cycle_start", "tool_setter",
                "spindle_at_speed", "probe"}
@@ -19,17 +20,17 @@ OUTPUT_ROLES = {"m3", "m4", "m7", "m8", "enable", "brake", "charge_pump", "healt
 
 
 class DescriptionError(Exception):
-    """What is wrong with a description; the file is named by who catches it."""
+    """An error in a description. The handler adds the name of the file."""
 
 
 @dataclass(frozen=True)
 class Pin:
-    signal: str  # the top's port, with its index: "step_o[2]"
+    signal: str  # port of the top module, with its index: "step_o[2]"
     site: str  # the device's pin
-    place: str  # where the board has it
+    place: str  # connector and pin on the board
     pull_up: bool = False
-    level: int = None  # of a pin that stands still
-    roles: tuple = ()  # suggested for it, keys of the machine file
+    level: int = None  # of a pin with a constant level
+    roles: tuple = ()  # suggested roles, as keys of the machine file
 
 
 @dataclass(frozen=True)
@@ -46,12 +47,12 @@ class Board:
     pll: dict
     card: dict
     pins: tuple
-    widths: dict  # of the groups of pins
-    constants: dict  # ports that stand still: their levels
-    emergency_stop: bool  # has a pin for it
+    widths: dict  # number of pins per group of GROUPS
+    constants: dict  # level of each port with a constant level
+    emergency_stop: bool  # whether the board has a pin for it
     roles: dict  # suggested for inputs and outputs: {"input": ["x_limit_minus x_home", ...], "output": [...]}
     least_set: int = 1
-    base: str = ""  # of a variant: the board whose folder it shares
+    base: str = ""  # of a variant: the board whose folder the variant shares
 
     @property
     def top(self):
@@ -98,7 +99,7 @@ def read_pins(raw, roles):
 
 
 def ice40_megahertz(pll, crystal):
-    """Clock, and what must lie in which range: phase detector and oscillator, MHz."""
+    """The clock in MHz, and (name, MHz, lowest, highest) of the phase detector and the oscillator."""
     detector = crystal / (pll["Divr"] + 1)
     oscillator = detector * (pll["Divf"] + 1)
     return oscillator / 2**pll["Divq"], [("phase detector", detector, 10, 133), ("oscillator", oscillator, 533, 1066)]
@@ -113,7 +114,7 @@ MEGAHERTZ = {"ice40": ice40_megahertz, "ecp5": ecp5_megahertz}
 
 
 def check_roles(board):
-    """Raises what a machine file or the card would refuse."""
+    """Raises DescriptionError for roles that a machine file or the card would refuse."""
     for group, known in (("input", INPUT_ROLES), ("output", OUTPUT_ROLES)):
         suggested = board.roles.get(group, [])
         if len(suggested) > board.widths[group]:
@@ -129,7 +130,7 @@ def check_roles(board):
 
 
 def check(board):
-    """Raises what does not fit together."""
+    """Raises DescriptionError for entries that contradict each other."""
     check_roles(board)
     if board.family not in MEGAHERTZ:
         raise DescriptionError(f"family {board.family!r}: only {', '.join(MEGAHERTZ)}")
@@ -153,7 +154,7 @@ def check(board):
 
 
 def load(name):
-    """The board of that name; ends the program where its description is wrong."""
+    """The board of that name; exits when its description is wrong."""
     file = BOARDS / name / "board.toml"
     try:
         raw = tomllib.loads(file.read_text())
@@ -173,12 +174,13 @@ def load(name):
 
 
 def names():
-    """The boards that there are."""
+    """Names of all boards."""
     return sorted(file.parent.name for file in BOARDS.glob("*/board.toml"))
 
 
 def variants(board):
-    """The same board with another device, from [variant.NAME]: it shares top and constraints and has a bitstream of its own."""
+    """The same board with another device, from [variant.NAME]. A variant shares the board's top and constraints and has
+    its own bitstream."""
     raw = tomllib.loads((board.folder / "board.toml").read_text()).get("variant", {})
     found = []
     for name, entries in raw.items():

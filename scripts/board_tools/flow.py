@@ -11,10 +11,10 @@ from board_tools.write import constraints_file
 
 BUILD = ROOT / "build" / "boards"
 SEEDS = (1, 2, 3)
-# nextpnr shall give a figure for a missed clock, too: complaint() judges every seed and the median.
+# nextpnr must report Fmax for a missed clock, too: complaint() judges every seed and the median.
 MEASURE = "--timing-allow-fail"
-HEADROOM = 1.1  # what the median of the seeds must have of the clock
-PLACEMENT_SECONDS = 2700  # a placer that finds no place may look for ever
+HEADROOM = 1.1  # least ratio of the seeds' median Fmax to the clock
+PLACEMENT_SECONDS = 2700  # a placer that finds no solution may search for ever
 
 
 def files_of(board):
@@ -94,7 +94,7 @@ def synthesise(board, build_id, dirty):
 
 
 def build(board, build_id, dirty, pool, say):
-    """Makes the bitstream, from the fastest seed's placement; what is to be recorded of it."""
+    """Makes the bitstream from the placement of the fastest seed; returns its record."""
     flow = FAMILIES[board.family]
     begun = time.monotonic()
     netlist = synthesise(board, build_id, dirty)
@@ -124,7 +124,7 @@ def build(board, build_id, dirty, pool, say):
 
 
 def complaint(board, record):
-    """What a board's clock lacks; empty when nothing."""
+    """Complaint about the board's Fmax; empty when it is sufficient."""
     least = board.clock_mhz * HEADROOM
     if min(record["fmax_mhz"]) < board.clock_mhz:
         return f"a seed reaches {min(record['fmax_mhz'])} MHz, the clock is {board.clock_mhz:g}"

@@ -1,14 +1,14 @@
-"""Which sources a bitstream or a figure is made of: BUILD_ID, and the commit of the RTL."""
+"""Identifies the sources of a bitstream or a figure: BUILD_ID, and the commit of the RTL."""
 import hashlib
 import subprocess
 import sys
 
 from rtl.file_list import ROOT
 
-# What goes into a bitstream, beside the board's own folder.
+# Sources of every bitstream, in addition to the board's own folder.
 INTO = ("rtl", "boards/rtl", "scripts/boards", "scripts/board_tools", "scripts/synthesis", "scripts/rtl/file_list.py",
         "requirements-synthesis.txt")
-# What lies there and does not.
+# Files in those folders that do not affect a bitstream.
 NOT_INTO = ("rtl/lint/", "rtl/trammel.core", "rtl/regs/trammel.rdl", "rtl/regs/CMakeLists.txt", "rtl/regs/generated/include/")
 
 
@@ -44,7 +44,7 @@ def rtl_commit():
 
 
 def rtl_lines(known):
-    """Of which RTL the figures of records are, {name: record}."""
+    """A line per RTL commit with the names of the records, {name: record}, that were made from it."""
     names = {}
     for name, record in known.items():
         names.setdefault(record["rtl"], []).append(name)

@@ -1,4 +1,4 @@
-"""What is written from the descriptions: top, constraints, and the tables in docs/user/boards.md."""
+"""Files generated from the descriptions: top, constraints, and the tables in docs/user/boards.md."""
 import re
 
 from board_tools.description import variants
@@ -13,7 +13,7 @@ def vector(width):
 
 
 def top_text(board):
-    """The top: PLL and card, and the pins that stand still."""
+    """The top: PLL, card, and the pins with constant levels."""
     parameters = [("BuildId", "BuildId"), ("BuildDirty", "BuildDirty"), ("BoardId", f"32'd{board.board_id}"),
                   ("ClockHz", f"32'd{board.clock_hz}"), ("ResetBits", board.reset_bits), *board.card.items()]
     widths = board.widths
@@ -101,7 +101,7 @@ def note_of(pin):
 
 
 def machine_file_text(board):
-    """What the suggested roles are in a machine file."""
+    """The suggested roles as lines of a machine file."""
     lines, probe = [], None
     for group in ("input", "output"):
         entries = [f"{role} = {index}" for index, text in enumerate(board.roles.get(group, [])) for role in text.split()]
@@ -139,7 +139,7 @@ def page_text(page, boards):
 
 
 def outputs(boards):
-    """Every file that is written from the descriptions, with its text."""
+    """Every file that is generated from the descriptions, with its text."""
     texts = {}
     for board in boards:
         texts[board.folder / f"{board.top}.sv"] = top_text(board)

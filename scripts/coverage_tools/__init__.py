@@ -1,1 +1,1 @@
-"""scripts/coverage: what the locksteps reach in the RTL, and the unit tests in the C++ libraries."""
+"""scripts/coverage: coverage of the RTL by the locksteps, and of the C++ libraries by the unit tests."""

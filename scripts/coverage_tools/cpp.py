@@ -1,4 +1,4 @@
-"""What the unit tests reach in the C++ libraries: driver, planner, G-code reader, golden model."""
+"""Coverage of the C++ libraries by their unit tests: driver, planner, G-code reader, golden model."""
 
 import json
 import subprocess
@@ -22,11 +22,11 @@ LIBRARIES = {
     "model": ("cpp-model/card", "cpp-model/card/CMakeFiles/trammel_model.dir"),
 }
 TESTS = ("driver", "planner", "gcode", "model")
-# Long runs that go where shorter tests go: they are for rare events, not for lines.
+# Long runs look for rare events; they cover no line that shorter tests miss.
 FILTERS = {"model": "-Underrun.*:Soak.*:Run.EqualsClock*"}
-LEAST = 0.95  # of lines and of branches
+LEAST = 0.95  # least share of lines, and of branches, that must be covered
 LIMIT = 1800  # seconds of one test program
-SHOWN = 60  # functions; the others are in missing.txt
+SHOWN = 60  # most functions that are printed; missing.txt has all
 
 
 def build(jobs: int):
@@ -38,7 +38,7 @@ def build(jobs: int):
 
 
 def run_tests(out: Path, jobs: int) -> List[str]:
-    """Runs the test programs from zero; the names of those that failed."""
+    """Runs the test programs with counts reset; returns the names of those that failed."""
     for old in BUILD.rglob("*.gcda"):
         old.unlink()
     say(f"running {len(TESTS)} test programs, {jobs} at a time")
@@ -61,7 +61,7 @@ def run_tests(out: Path, jobs: int) -> List[str]:
 
 
 def objects() -> List[Path]:
-    """Those of the libraries, and of the tests, which instantiate what headers define."""
+    """Object files of the libraries, and of the tests, which instantiate the code of headers."""
     folders = [folder for _, folder in LIBRARIES.values()] + ["tests"]
     return sorted(path for folder in folders for path in (BUILD / folder).rglob("*.gcno") if is_ours(path))
 

@@ -8,22 +8,23 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, Iterable, List, Tuple
 
-Place = Tuple[int, int]  # line and column where a function begins: the same for all instances of a template
+Place = Tuple[int, int]  # line and column of a function's beginning, the same for all instances of a template
 
 
 @dataclass
 class Function:
-    """All instances of a function: a line or branch is covered when one of them has reached it."""
+    """All instances of a function. A line or branch is covered when one instance has reached it."""
     name: str
     lines: Dict[int, int] = field(default_factory=lambda: defaultdict(int))
-    branches: Dict[Tuple[int, int], int] = field(default_factory=lambda: defaultdict(int))  # by line and number there
+    branches: Dict[Tuple[int, int], int] = field(default_factory=lambda: defaultdict(int))  # by line and branch
 
 
 Files = Dict[str, Dict[Place, Function]]  # functions by file below the project's folder
 
 
 def decisions(branches: List[dict]) -> List[int]:
-    """Counts without the pairs of a call that returns or throws: the source decides nothing there."""
+    """Counts of the branches, without the pair at each call that returns or throws: that pair is no decision in the
+    source."""
     found, position = [], 0
     while position < len(branches):
         if any(branch["throw"] for branch in branches[position:position + 2]):
@@ -58,7 +59,7 @@ def add_line(function: Function, line: dict):
 
 
 def relative(file: Path, root: Path):
-    """None for a file from elsewhere, and for what the build has written."""
+    """The path below the project's folder; None for a file outside it, and for one that the build generated."""
     path = Path(os.path.normpath(file))
     if not path.is_relative_to(root):
         return None
@@ -67,7 +68,7 @@ def relative(file: Path, root: Path):
 
 
 def read(objects: Iterable[Path], root: Path) -> Files:
-    """Of the .gcno files; one whose program never ran counts with zeros."""
+    """Reads the coverage of .gcno files. Files of a program that never ran count zero."""
     files: Files = {}
     for path in objects:
         done = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", str(path)], cwd=path.parent,

@@ -1,4 +1,4 @@
-"""Coverage points of Verilator's .dat files. lcov shows lines alone of them, so they are read here."""
+"""Coverage points of Verilator's .dat files. lcov shows only lines, so this module reads the files itself."""
 
 import re
 from collections import defaultdict
@@ -11,17 +11,17 @@ ENTRY = re.compile(r"C '(.*)' (\d+)")
 
 
 class PointError(Exception):
-    """A .dat file that is not as Verilator 5.006 writes it."""
+    """A .dat file whose format differs from that of Verilator 5.006."""
 
 
 @dataclass(frozen=True, order=True)
 class Point:
-    """The same place of a module in all its instances and with all its parameters: covered when one of them is."""
+    """A place in the source of a module, for all instances and parameters. It is covered when one instance is."""
     file: str  # below the project's folder
     line: int
     column: int
     kind: str
-    what: str  # of a line: block, elsif, case; of a branch: if, else; of a toggle: the signal's bit
+    what: str  # for a line: block, elsif, case; for a branch: if, else; for a toggle: the signal's bit
     module: str
 
     def __str__(self) -> str:
@@ -29,7 +29,7 @@ class Point:
 
 
 def of_text(text: str, where: str, root: Path) -> Dict[Point, int]:
-    """Counts by point; those of instances are added."""
+    """Counts by point, summed over all instances."""
     found: Dict[Point, int] = defaultdict(int)
     lines = text.splitlines()
     if not lines or not lines[0].startswith("# SystemC::Coverage"):

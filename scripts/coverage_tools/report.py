@@ -1,4 +1,4 @@
-"""What was reached of the RTL: figures of each module, the points that are missing, and the verdict."""
+"""Report of RTL coverage: figures of each module, missing points, and the verdict."""
 
 from collections import Counter
 from typing import Dict, List
@@ -8,7 +8,7 @@ from .waivers import MOST, Waiver
 
 
 def figures(counts: Dict[Point, int], waived: Dict[Point, Waiver]) -> Dict[str, Dict[str, int]]:
-    """By kind, as far as there are points: all points, those covered, those waived."""
+    """Numbers of all, covered and waived points, for each kind that has points."""
     found = {}
     for kind in KINDS:
         points = [point for point in counts if point.kind == kind]
@@ -19,7 +19,7 @@ def figures(counts: Dict[Point, int], waived: Dict[Point, Waiver]) -> Dict[str, 
 
 
 def result(counts: Dict[Point, int], waived: Dict[Point, Waiver], modules: Dict[str, str], wrong: List[str]) -> dict:
-    """All as data. `modules`: the file of each module that was clocked, also of those without a point (wires alone have none)."""
+    """The report as data. `modules`: the file of each clocked module, including modules without points (only wires)."""
     missing = sorted(point for point in counts if not counts[point] and point not in waived)
     return {
         "totals": figures(counts, waived),
@@ -43,7 +43,7 @@ def passed(found: dict) -> bool:
 
 
 def shown(figure: Dict[str, int]) -> str:
-    """Covered of all that can be, and how many are waived."""
+    """Covered points, out of those that are not waived, and the number of waived ones."""
     if not figure:
         return "-"
     needed = figure["points"] - figure["waived"]
@@ -52,7 +52,7 @@ def shown(figure: Dict[str, int]) -> str:
 
 
 def text(found: dict, sources: Dict[str, List[str]]) -> str:
-    """The table, then a line for each point that is missing, with the source's text."""
+    """The table, then a line for each missing point with its source text."""
     kinds = list(found["totals"])
     width = max(map(len, [*found["modules"], "module"]))
     lines = ["  ".join([f"{'module':{width}}", *(f"{kind:26}" for kind in kinds)]).rstrip()]

@@ -1,4 +1,4 @@
-"""Builds the locksteps so that they count, runs them, and reads what they have counted."""
+"""Builds the locksteps with coverage counters, runs them, and reads the counts."""
 
 import json
 import os
@@ -18,21 +18,21 @@ from . import points, report, waivers
 ROOT = identity.ROOT
 WAIVERS = Path("verif/coverage/waivers.toml")
 LIMIT = 1800  # seconds of one process
-# The longest, cut into so many processes.
+# The longest lockstep runs in this many processes.
 SHARDS = {"lockstep_card": 4}
-# Locksteps of whole cards take most of the time of building and running, and the blocks' own should reach every point:
-# what only a whole card reaches has no lockstep near it.
+# Locksteps of whole cards take most of the time of building and running, and the locksteps of blocks should reach every
+# point: a point that only a whole card reaches lacks a lockstep of its block.
 WHOLE_CARDS = re.compile(r"card|stops|card_engines_.*|card_pins|.*_uart")
-# Repetitions of the card's random run with further seeds.
+# Left out: repetitions of the card's random run with more seeds.
 FILTERS = {"lockstep_card": "-*_1:*_2:*_3:*_4:*_5:*Around/20"}
-# What the environment would change in the sample: each test has its usual length and seed.
+# Removed from the environment, so that each test has its usual length and seed.
 UNSET = ("TRAMMEL_LONG", "TRAMMEL_SEED", "TRAMMEL_STATE_SEED", "TRAMMEL_MUTANT")
 
 
 @dataclass(frozen=True)
 class Lockstep:
     name: str
-    sources: List[str]  # below rtl/, as cmake names them
+    sources: List[str]  # paths relative to rtl/, as CMake has them
 
     @property
     def program(self) -> str:
@@ -51,7 +51,7 @@ def configure(toggle: bool):
 
 
 def checked(command: List[str], log: Path, what: str):
-    """Ends the script when the command fails; what it prints is in the log."""
+    """Exits when the command fails. The log receives the command's output."""
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w") as file:
         status = subprocess.run(command, cwd=ROOT, stdout=file, stderr=subprocess.STDOUT).returncode
@@ -61,7 +61,7 @@ def checked(command: List[str], log: Path, what: str):
 
 
 def locksteps(build: Path, pattern: str) -> List[Lockstep]:
-    """Those that the build knows, whose names the pattern finds."""
+    """The build's locksteps whose names match the pattern."""
     entries = json.loads((build / "verif/judges.json").read_text())["locksteps"]
     found = [Lockstep(entry["name"], entry["sources"]) for entry in entries]
     return [each for each in found if re.search(pattern, each.name)]
@@ -101,7 +101,7 @@ class Runs:
             for old in self.files(lockstep):
                 old.unlink()
         runs = [(lockstep, shard) for lockstep in chosen for shard in range(SHARDS.get(lockstep.program, 1))]
-        # Whole cards first: the longest at the end would run alone.
+        # Whole cards first: if they came last, the longest would run alone at the end.
         runs.sort(key=lambda run: -len(run[0].sources))
         self.total = len(runs)
         with ThreadPoolExecutor(jobs) as pool:
@@ -121,7 +121,7 @@ class Runs:
                                         timeout=LIMIT).returncode
             except subprocess.TimeoutExpired:
                 status = 124
-            except OSError as error:  # with --no-build it may not be there
+            except OSError as error:  # with --no-build the program may be missing
                 log.write(f"{error}\n")
                 status = 127
         self.ended += 1
@@ -143,7 +143,8 @@ def modules_of(chosen: List[Lockstep]) -> Dict[str, str]:
 
 
 def is_judged(file: str) -> bool:
-    """Stand-ins for primitives and for the card belong to the tests. Of functions in packages Verilator 5.006 loses most counts."""
+    """Whether a file's points count. Simulation models of primitives and of the card belong to the tests; Verilator
+    5.006 loses most counts of functions in packages."""
     return file.startswith(("rtl/", "boards/")) and not file.startswith("boards/sim/") and not file.endswith("_pkg.sv")
 
 
@@ -155,8 +156,8 @@ def not_clocked(modules: Dict[str, str]) -> List[str]:
 
 
 def evaluate(runs: Runs, chosen: List[Lockstep], whole: bool) -> dict:
-    """Reads the .dat files and writes coverage.json, missing.txt and lcov.info into the folder of results. Of a part of the
-    locksteps the waivers are applied, and not judged."""
+    """Reads the .dat files and writes coverage.json, missing.txt and lcov.info into the folder of results. With a part
+    of the locksteps, the waivers are applied but not judged."""
     files = [file for each in chosen for file in runs.files(each)]
     for lockstep in chosen:
         if lockstep.name not in runs.failed and not runs.files(lockstep):

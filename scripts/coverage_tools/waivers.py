@@ -1,4 +1,4 @@
-"""Waivers: points that nothing can reach, each with its reason, in verif/coverage/waivers.toml."""
+"""Waivers: unreachable points, each with its reason, in verif/coverage/waivers.toml."""
 
 import tomllib
 from dataclasses import dataclass
@@ -8,8 +8,8 @@ from typing import Dict, Iterable, List, Tuple
 from .points import KINDS, Point
 
 FIELDS = {"file": str, "text": str, "kind": str, "what": str, "reason": str}
-MOST = 0.02  # of a kind's points may be waived
-SHORTEST_REASON = 20  # characters: less is a word, not a reason
+MOST = 0.02  # largest share of a kind's points that may be waived
+SHORTEST_REASON = 20  # characters; a shorter text is a word, not a reason
 
 
 class WaiverError(Exception):
@@ -19,9 +19,9 @@ class WaiverError(Exception):
 @dataclass(frozen=True)
 class Waiver:
     file: str
-    text: str  # of the line, without blanks around it; line numbers would change with each edit
+    text: str  # text of the line, without surrounding blanks: line numbers would change with each edit
     kind: str
-    what: str  # "" : any
+    what: str  # "": matches any
     reason: str
 
     def __str__(self) -> str:
@@ -52,13 +52,14 @@ def check(entry: dict, where: str) -> Waiver:
 
 
 def apply(waivers: Iterable[Waiver], counts: Dict[Point, int], root: Path) -> Tuple[Dict[Point, Waiver], List[str]]:
-    """The points that are waived, and what is wrong with waivers: one that matches no point, or a point that was reached."""
+    """The waived points, and the faults of waivers: a waiver that matches no point, or one for a point that was
+    reached."""
     texts: Dict[str, List[str]] = {}
     waived: Dict[Point, Waiver] = {}
     wrong = []
     for waiver in waivers:
         if waiver.kind not in {point.kind for point in counts}:
-            continue  # toggles are counted on demand
+            continue  # toggles are counted only on request
         if waiver.file not in texts:
             path = root / waiver.file
             texts[waiver.file] = path.read_text().splitlines() if path.exists() else []

@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from board_tools.description import load, names  # noqa: E402
 
 DIAGRAM = re.compile(r"^```(dot|wavedrom|wiring)\n(.*?)^```$(?:\n\n\*([^*]+)\*$)?", re.MULTILINE | re.DOTALL)
-# The look of every block diagram stands here, so that a source has nothing but blocks and connections.
+# The style of every block diagram, so that a source has only blocks and connections.
 DOT = ["dot", "-Tsvg", "-Gbgcolor=white", "-Gfontname=Helvetica", "-Gfontsize=12", "-Glabeljust=l", "-Gnodesep=0.25", "-Granksep=0.35",
        "-Nshape=box", "-Nstyle=rounded,filled", "-Nfillcolor=#eef3fa", "-Ncolor=#44628c", "-Nfontname=Helvetica", "-Nfontsize=12",
        "-Nheight=0.35", "-Nmargin=0.12,0.06", "-Ecolor=#555555", "-Efontname=Helvetica", "-Efontsize=10", "-Earrowsize=0.7"]
@@ -29,12 +29,13 @@ def block_diagram(source: str) -> str:
 
 def timing_diagram(source: str) -> str:
     drawing = wavedrom.render(source)
-    drawing.elements.insert(1, drawing.rect(size=("100%", "100%"), fill="white"))  # behind all but the definitions
+    drawing.elements.insert(1, drawing.rect(size=("100%", "100%"), fill="white"))  # behind all but definitions
     return drawing.tostring()
 
 
 def with_places(label: str) -> str:
-    """A label with the places of pins on their board: "@ulx3s.step_o[0]" as boards/ulx3s/board.toml has it."""
+    """Replaces pins in a label by their places on the board: "@ulx3s.step_o[0]" by the place in
+    boards/ulx3s/board.toml."""
 
     def place(match: re.Match) -> str:
         board, signal = match.groups()
@@ -54,7 +55,8 @@ DRAW = {"dot": block_diagram, "wavedrom": timing_diagram, "wiring": wiring_diagr
 
 
 def with_drawings(markdown: str, page: str, folder: Path) -> str:
-    """The page's text with an image in place of each diagram; the files are written into FOLDER. Ends the program where one fails."""
+    """Replaces each diagram of the page by an image, and writes the image files into FOLDER. Exits when a diagram
+    fails."""
     number = 0
 
     def drawn(match: re.Match) -> str:
@@ -67,7 +69,7 @@ def with_drawings(markdown: str, page: str, folder: Path) -> str:
         name = f"{Path(page).stem.lower()}-{number}.svg"
         try:
             drawing = DRAW[kind](source)
-        except Exception as problem:  # whatever a tool makes of a wrong source
+        except Exception as problem:  # the tools raise various exceptions for a wrong source
             sys.exit(f"error: {place}: this {kind} diagram cannot be drawn: {problem}")
         folder.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(drawing)

@@ -13,20 +13,21 @@
     wire BOX.PIN PART ... GND     or one that ends in a symbol: GND, or a supply as "+5 V"
 
 PART is R "TEXT", NC "TEXT" (a contact that opens), NO "TEXT", FUSE "TEXT", or hangs off the wire: `up R "TEXT" "+3.3 V"` or
-`down C "TEXT" GND`. In a label @BOARD.SIGNAL stands for the place of the pin in boards/BOARD/board.toml. Lengths are pixels.
+`down C "TEXT" GND`. In a label @BOARD.SIGNAL gives the place of the pin in boards/BOARD/board.toml. Lengths are pixels.
 
-What cannot be drawn clearly is an error: wires of two nets on each other, parts on wires or boxes, an unknown pin."""
+A drawing that would be unclear is an error: wires of two nets on each other, parts on wires or boxes, an unknown
+pin."""
 import shlex
 from dataclasses import dataclass, field
 
 ROW, TITLE, MARGIN, GAP, LANE = 28, 34, 20, 160, 14
-LETTER = 6.3  # of a label, at most on the average
-PART_LENGTH, HANGING = 54, 36  # what a part takes of its wire
+LETTER = 6.3  # pixels per letter of a label, an upper bound of the average
+PART_LENGTH, HANGING = 54, 36  # pixels of the wire that a part in line, or a hanging part without its text, occupies
 PARTS = {"R", "C", "NC", "NO", "FUSE"}
 
 
 class WiringError(Exception):
-    """What is wrong with a drawing, with its line where one is."""
+    """An error in a drawing, with the line of the source if there is one."""
 
 
 @dataclass
@@ -65,15 +66,15 @@ class Part:
     kind: str
     text: str
     hangs: str = ""  # "up", "down", or "" in line
-    end: str = ""  # of one that hangs
+    end: str = ""  # symbol at the end of a hanging part
 
 
 @dataclass
 class Wire:
     line: int
-    pins: list  # names, the first one before the parts
+    pins: list  # names; the parts come after the first pin
     parts: list
-    end: str = ""  # symbol, where it has no second pin
+    end: str = ""  # symbol at the end of a wire without a second pin
     lane: float = None
 
 
@@ -89,7 +90,7 @@ class Drawing:
 
 
 def read_pins(drawing, words, places):
-    """A row of the box begun last."""
+    """Reads a row of the current box."""
     box = list(drawing.boxes.values())[-1]
     while words:
         side, name, label, *words = words
@@ -102,7 +103,7 @@ def read_pins(drawing, words, places):
 
 
 def read_part(words):
-    """A part at the beginning of the words, and the words behind it."""
+    """The part at the beginning of the words, and the words after it."""
     hangs = words.pop(0) if words[0] in ("up", "down") else ""
     kind, text = words.pop(0), words.pop(0)
     if kind not in PARTS:
@@ -154,7 +155,7 @@ def read_line(drawing, line, words, places):
 
 
 def read(source, places):
-    """The drawing that the text describes. `places` makes the label of a pin."""
+    """The drawing that the text describes. `places` resolves the pins in a label."""
     drawing = Drawing()
     for line, text in enumerate(source.splitlines(), 1):
         try:
@@ -172,7 +173,7 @@ def read(source, places):
 
 
 def room_for(part):
-    """What a part takes of the level piece of its wire."""
+    """Length, in pixels, that a part occupies on the horizontal segment of its wire."""
     return HANGING + width_of(part.text) if part.hangs else max(PART_LENGTH, width_of(part.text) + 10)
 
 
@@ -181,7 +182,7 @@ def width_of(text, letter=LETTER):
 
 
 def place_boxes(drawing):
-    """Columns from left to right, each as wide as its widest box; the pins on the boxes' edges."""
+    """Places columns from left to right, each as wide as its widest box, and the pins on the edges of the boxes."""
     x = MARGIN
     for column, gap in enumerate(drawing.gaps):
         boxes = [box for box in drawing.boxes.values() if box.column == column]
@@ -205,7 +206,7 @@ def width_of_box(box):
 
 
 def gap_of(drawing, wire):
-    """The index of the gap that a wire lies in: that right of column N."""
+    """The index of the gap that has the wire: gap N is to the right of column N."""
     gaps = set()
     for name in wire.pins:
         pin = drawing.pins[name]
@@ -221,8 +222,8 @@ def stubs(drawing, wire, side):
 
 
 def in_order(drawing, wires):
-    """The wires from the left lane to the right one: where the level pieces of two share a height, the one that comes from the
-    left turns off first."""
+    """The wires in the order of their lanes from the left. If horizontal segments of two wires have the same height,
+    the wire that comes from the left turns off first."""
     before = {id(b): [a for a in wires if a is not b and stubs(drawing, a, "left") & stubs(drawing, b, "right")] for b in wires}
     order = []
     while len(order) < len(wires):
@@ -235,7 +236,8 @@ def in_order(drawing, wires):
 
 
 def place_lanes(drawing):
-    """An upright piece for each net that needs one, beside its last pins, so that parts have room at its first one."""
+    """Places a vertical segment for each net that needs one, near its last pins, so that parts have room near the first
+    pin."""
     groups = {}
     for wire in drawing.wires:
         gap, pins = gap_of(drawing, wire), [drawing.pins[name] for name in wire.pins]
@@ -244,7 +246,7 @@ def place_lanes(drawing):
     for (_, side), wires in groups.items():
         edge = drawing.pins[wires[0].pins[1]].x
         for number, wire in enumerate(in_order(drawing, wires)):
-            # Between two pins of one side the parts are on the way out.
+            # In a net between pins of one side, the parts lie between the first pin and the lane.
             out = sum(map(room_for, wire.parts)) if all(drawing.pins[name].side == side for name in wire.pins) else 0
             wire.lane = edge + 10 + LANE * number + out if side == "right" else edge - 10 - LANE * (len(wires) - 1 - number) - out
 
@@ -267,7 +269,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Area:
-    """What no other wire and no other part may touch."""
+    """An area that no other wire and no other part may touch."""
     net: int
     what: str
     x1: float
@@ -277,14 +279,14 @@ class Area:
 
 
 class Sheet:
-    """What is drawn, and what its pieces must not touch."""
+    """The SVG under construction, with the segments and areas that must not touch each other."""
 
     def __init__(self):
         self.texts, self.segments, self.areas = [], [], []
         self.left, self.right, self.bottom = 0, 0, 0
 
     def reach(self, left, right, bottom):
-        """Makes the sheet so large that this lies on it, with a margin around."""
+        """Enlarges the sheet to contain these bounds with a margin."""
         self.left, self.right = min(self.left, left - MARGIN), max(self.right, right + MARGIN)
         self.bottom = max(self.bottom, bottom + MARGIN)
 
@@ -310,13 +312,13 @@ class Sheet:
 
 
 def draw_body(sheet, kind, x, y, upright):
-    """A part's symbol around (x, y), 30 long; the wires to its ends are others' work."""
+    """Draws a part's symbol around (x, y), 30 pixels long, without the wires to its ends."""
     turned = f' transform="rotate(90 {x:g} {y:g})"' if upright else ""
     bodies = {
         "R": f'<rect x="{x - 15:g}" y="{y - 5:g}" width="30" height="10"/>',
         "FUSE": f'<rect x="{x - 15:g}" y="{y - 5:g}" width="30" height="10"/><path d="M{x - 15:g} {y:g}h30"/>',
         "C": f'<path d="M{x - 15:g} {y:g}h12m0 -9v18m6 -18v18m0 -9h12"/>',
-        # Drawn as they are at rest: a contact that opens is closed.
+        # Contacts are drawn at rest: one that opens is drawn closed.
         "NC": f'<path d="M{x - 15:g} {y:g}h5l21 -6m-1 -5v11m0 0h5"/>',
         "NO": f'<path d="M{x - 15:g} {y:g}h5l19 -9m1 9h5"/>',
     }
@@ -324,7 +326,8 @@ def draw_body(sheet, kind, x, y, upright):
 
 
 def draw_end(sheet, net, end, x, y, way):
-    """The symbol of ground or of a supply at the end of a wire that comes from the side `way` points away from."""
+    """Draws the symbol of ground or of a supply at the end of a wire; `way` is the wire's direction towards the
+    symbol."""
     if end == "GND":
         sheet.add(f'<path class="part" d="M{x - 9:g} {y:g}h18m-15 4h12m-9 4h6"/>' if way == "down" else
                   f'<path class="part" d="M{x:g} {y:g}v6m-9 0h18m-15 4h12m-9 4h6"/>')
@@ -341,7 +344,7 @@ def draw_end(sheet, net, end, x, y, way):
 
 
 def draw_hanging(sheet, net, part, x, y):
-    """A part that hangs off the wire at (x, y), and its end."""
+    """Draws a part that hangs off the wire at (x, y), with the symbol at its end."""
     way = 1 if part.hangs == "down" else -1
     sheet.dot(x, y)
     sheet.wire(net, x, y, x, y + way * 7)
@@ -354,14 +357,15 @@ def draw_hanging(sheet, net, part, x, y):
 
 
 def draw_level(sheet, net, wire, x1, x2, y):
-    """The level piece from the first pin at x1 to x2, with the wire's parts spread over it. Nets behind a part in line are others."""
+    """Draws the horizontal segment from the first pin at x1 to x2, with the wire's parts spread over it. A part in line
+    separates two nets; returns the last one."""
     way, needed = 1 if x2 > x1 else -1, sum(map(room_for, wire.parts))
     if needed > abs(x2 - x1):
         raise WiringError(f"line {wire.line}: parts need {needed:.0f} pixels, there are {abs(x2 - x1):.0f}")
-    # What is left over is spread evenly.
+    # The spare length is spread evenly.
     spare, at, here, number = (abs(x2 - x1) - needed) / (len(wire.parts) or 1), 0, x1, 0
     for part in wire.parts:
-        # A part that hangs has its text on its right.
+        # A hanging part has its text on its right.
         room = room_for(part) + spare
         x = x1 + way * (at + (room / 2 if not part.hangs else spare / 2 + (16 if way > 0 else room - spare - 16)))
         at += room
@@ -402,7 +406,7 @@ def draw_wire(sheet, drawing, net, wire):
 
 
 def draw_led(sheet, box, pins):
-    """Inside a box: from the upper pin through a resistor and an LED to the lower one."""
+    """Inside a box: draws a resistor and an LED from the upper pin to the lower one."""
     x, top, bottom = box.x + width_of(max((pin.label for pin in pins), key=len)) + 52, pins[0].y, pins[1].y
     middle = (top + bottom) / 2
     sheet.add(f'<path class="part" d="M{box.x + width_of(pins[0].label) + 14:g} {top:g}H{x - 26:g}m20 0H{x + 18:g}V{middle - 6:g}'
@@ -432,11 +436,11 @@ def draw_box(sheet, drawing, box):
         (draw_led if kind == "led" else draw_contact)(sheet, box, [drawing.pins[name] for name in names])
 
 
-# --- what must not happen
+# --- checks
 
 
 def overlaps(a, b):
-    """Whether two pieces of wire lie on each other for some length."""
+    """Whether two segments lie on each other over some length."""
     if a.level != b.level:
         return False
     if a.level:
@@ -445,12 +449,12 @@ def overlaps(a, b):
 
 
 def meets(a, b):
-    """Whether a piece of wire enters an area."""
+    """Whether a segment enters an area."""
     return (min(a.x1, a.x2) < b.x2 and max(a.x1, a.x2) > b.x1 and min(a.y1, a.y2) < b.y2 and max(a.y1, a.y2) > b.y1)
 
 
 def check(sheet, drawing):
-    """Raises where two nets could be taken for one, or a part for another."""
+    """Raises WiringError when a reader could take two nets for one, or one part for another."""
     for number, a in enumerate(sheet.segments):
         for b in sheet.segments[number + 1:]:
             if a.net != b.net and overlaps(a, b):
@@ -464,7 +468,7 @@ def check(sheet, drawing):
 
 
 def owner(net):
-    """The wire of the description that a net is a piece of."""
+    """The wire of the description that a net belongs to."""
     while isinstance(net, tuple):
         net = net[0]
     return net

@@ -1,1 +1,1 @@
-"""One page that shows the evidence: what judged which module, in which run, and with which result."""
+"""One page that shows the evidence: which judge judged which module, in which run, and with which result."""

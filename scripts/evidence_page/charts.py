@@ -1,10 +1,11 @@
-"""Charts over release candidates, drawn by uPlot in the browser; the library is put into the page, from web/node_modules."""
+"""Charts over release candidates, drawn by uPlot in the browser; the page contains the library, from
+web/node_modules."""
 import json
 from html import escape
 from pathlib import Path
 
 UPLOT = Path(__file__).resolve().parents[2] / "web/node_modules/uplot/dist"
-LEAST = 2  # release candidates, below which a chart shows nothing that the tables do not
+LEAST = 2  # least number of release candidates for a chart; with fewer, a chart shows no more than the tables
 
 DRAW = """
 for (const chart of CHARTS) {

@@ -1,6 +1,6 @@
-"""Collects the data of the evidence page from tracked files alone, so that the page can be made of any clone.
+"""Collects the data of the evidence page from tracked files only, so that the page can be made from any clone.
 
-Nothing is worked out anew here: figures of runs come from verif/evidence/*.json (scripts/evidence keep writes them), those of
+Nothing is computed here: figures of runs come from verif/evidence/*.json (scripts/evidence keep writes them), those of
 modules from verif/evidence/modules.json (scripts/rtl/judges), sizes from boards/results, the papers from docs/papers."""
 import json
 import re
@@ -23,7 +23,7 @@ def releases(folder: Path) -> list[dict]:
 
 
 def sizes() -> list[dict]:
-    """Builds and bitstreams as they were placed, with the clock of each seed in MHz."""
+    """Recorded builds and bitstreams, with the clock of each seed in MHz."""
     rows = []
     for device, unit in (("hx8k", "LC"), ("ecp5-25k", "COMB")):
         file = ROOT / f"boards/results/{device}.json"
@@ -42,7 +42,7 @@ def size_row(name: str, build: dict, unit: str, file: Path) -> dict:
 
 
 def papers() -> list[dict]:
-    """How many items of each paper came out how, as docs/papers/README.md says below each paper's title."""
+    """Number of items per verdict for each paper, from docs/papers/README.md, below the paper's title."""
     rows, title = [], None
     for line in (ROOT / "docs/papers/README.md").read_text().splitlines():
         if heading := re.match(r"## \[(.+)\]\((.+)\)", line):
@@ -56,7 +56,7 @@ def papers() -> list[dict]:
 
 
 def foreign_judges(records: list[dict]) -> list[dict]:
-    """Each judge with the runs that it was part of: those of its part, and the tests that its pattern names."""
+    """Each foreign judge with its runs: those of its part of scripts/test, and the tests that its pattern matches."""
     judges = tomllib.loads(suite.JUDGES.read_text())["judge"]
     for judge in judges:
         runs = [r for r in records if "part" in judge and r["job"] == f"part-{judge['part']}"]
@@ -69,7 +69,7 @@ def foreign_judges(records: list[dict]) -> list[dict]:
 
 
 def coverage(records: list[dict]) -> dict:
-    """Each module's points of the newest run that has counted a kind of them."""
+    """Each module's points by kind, from the newest run that has counted the kind."""
     found: dict = {}
     for record in sorted((r for r in records if "coverage" in r), key=lambda r: r["begun"]):
         for module, kinds in record["coverage"].items():
@@ -78,8 +78,8 @@ def coverage(records: list[dict]) -> dict:
 
 
 def mutants(records: list[dict]) -> dict:
-    """Each module's mutants that were tried and killed. Shards of one command are added up; where the mutants were cut into
-    shards in two ways, the way that has tried more of the module's counts."""
+    """Numbers of tried and killed mutants of each module. Shards of one command are added up. If the mutants were cut
+    into shards in two ways, the way that tried more mutants of the module counts."""
     ways: dict = {}
     for record in (r for r in records if "mutants" in r):
         way = re.sub(r"\d+", "", record["job"])
@@ -90,7 +90,7 @@ def mutants(records: list[dict]) -> dict:
 
 
 def proofs(records: list[dict]) -> dict:
-    """Each proof's runs, with covers and seeded bugs, of the newest record that has it."""
+    """Each proof's runs, with covers and seeded bugs, from the newest record of the proof."""
     found: dict = {}
     for record in sorted((r for r in records if "proofs" in r), key=lambda r: r["begun"]):
         found.update(record["proofs"])
@@ -98,7 +98,7 @@ def proofs(records: list[dict]) -> dict:
 
 
 def clocks(records: list[dict]) -> dict:
-    """The clocks that each lockstep has compared, in all runs together: their seeds differ."""
+    """The clocks that each lockstep has compared, summed over all runs, because their seeds differ."""
     found: dict = {}
     for record in records:
         for lockstep, number in record.get("clocks", {}).items():

@@ -20,7 +20,7 @@ code { font-size: 13px; }
 
 
 def sums(data: dict) -> str:
-    """The figures that one looks for first."""
+    """The most important figures, as a list."""
     modules = data["modules"]
     failed = sum(run["result"] != "passed" for run in data["runs"])
     judges = data["foreign_judges"]
@@ -54,6 +54,6 @@ def write(folder: Path, data: dict) -> None:
 
 
 def dead_links(folder: Path) -> list[str]:
-    """Links of the page to files that are not there, once the site stands around it."""
+    """Links of the page to missing files; valid only when the page lies in the built site."""
     links = set(re.findall(r'href="([^"#]+)"', (folder / "index.html").read_text()))
     return sorted(link for link in links if "://" not in link and not (folder / link).exists())

@@ -28,7 +28,7 @@ def table() -> str:
 
 
 def with_table(text: str) -> str:
-    """The README's text with the table as it must be, in its place: from its head to the empty line behind it."""
+    """Replaces the table in the README's text, from its head to the empty line after it, by the current one."""
     begin = text.find(HEAD)
     end = text.find("\n\n", begin)
     if begin < 0 or end < 0:

@@ -2,12 +2,13 @@
 import re
 from html import escape as escaped
 
-# Where the page's links lead: the site's own pages of the files (scripts/documentation/site-pages), from build/site/evidence.
+# Target of the page's links: the site's pages of the files (scripts/documentation/site-pages), relative to
+# build/site/evidence.
 SOURCE = "../source"
 
 
 def escape(text: str) -> str:
-    """A text of the data as HTML; what stands between backticks is code."""
+    """A text of the data as HTML; text between backticks becomes code."""
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escaped(text))
 
 
@@ -80,7 +81,7 @@ def proved(proofs: dict, name: str | None) -> str:
 
 
 def killed(mutants: dict, row: dict) -> str:
-    """Of all mutants of the module. Those that are listed with a reason need not be killed."""
+    """Killed out of all mutants of the module. Mutants that are listed with a reason need not be killed."""
     figure = mutants.get(row["module"], {"tried": 0, "killed": 0})
     if figure["tried"] < row["mutants"]:
         return f'<span class="none">{number(figure["tried"])} of {number(row["mutants"])} tried</span>'
@@ -89,7 +90,7 @@ def killed(mutants: dict, row: dict) -> str:
 
 
 def covered(coverage: dict, module: str, kind: str) -> str:
-    """Covered of all, and those that are waived; wires alone have no line and no branch."""
+    """Covered points out of all, and the waived ones. Modules with only wires have no lines and no branches."""
     if module not in coverage:
         return '<span class="none">not recorded</span>'
     points = coverage[module].get(kind)
@@ -132,6 +133,6 @@ def peers(data: dict) -> str:
 
 
 def with_address(source: str) -> str:
-    """A source is an address, a blank and where to look there."""
+    """A source is an address, a blank, and the place in the document."""
     address, _, place = source.partition(" ")
     return f'<a href="{escaped(address)}">{escaped(address.split("//")[-1].split("/")[0])}</a> {escape(place)}'

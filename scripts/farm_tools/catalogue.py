@@ -1,4 +1,4 @@
-"""The whole list of jobs, and the quick one. A new kind of job is a function in LISTS and a sample in quick()."""
+"""The whole list of jobs, and the quick one. A new kind of job needs a function in LISTS and a sample in samples()."""
 
 import json
 from pathlib import Path
@@ -47,8 +47,8 @@ def quick() -> List[Job]:
 
 
 def measure(jobs: List[Job], found: results.Records, field: str) -> int:
-    """Takes the seconds of what has passed, by this field of its record, into the data file; their number. Jobs that are gone
-    leave it. A fuzzer's time is given."""
+    """Writes the seconds of passed jobs, from this field of their records, to the data file, and removes jobs that no
+    longer exist. Fuzzers are left out, because their time is given. Returns the number of jobs measured."""
     known = {name: seconds for name, seconds in expected().items() if name in {job.id for job in jobs}}
     new = {job.id: round(found[job.id][field], 1) for job in jobs
            if job.id in found and found[job.id]["result"] == "passed" and job.kind != "fuzz"}

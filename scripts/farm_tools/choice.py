@@ -1,4 +1,4 @@
-"""The jobs that the options of a command name, and which of them are due."""
+"""The jobs that the options of a command select, and those of them that are due."""
 
 import sys
 from typing import List, Tuple
@@ -10,7 +10,7 @@ from .job import Job, JobError, read_list, with_needs
 
 
 def chosen(arguments) -> List[Job]:
-    """The jobs that the options name, with the builds that they need."""
+    """The selected jobs, with the builds that they need."""
     if arguments.list:
         jobs = read_list(arguments.list)
     else:
@@ -24,7 +24,7 @@ def chosen(arguments) -> List[Job]:
 
 
 def due_of(arguments) -> Tuple[List[Job], List[Job]]:
-    """The jobs, and those of them that are due."""
+    """The selected jobs, and those of them that are due."""
     jobs, found = chosen(arguments), results.read_folder(arguments.out)
     todo = due.due(jobs, found)
     print(f"{len(todo)} of {len(jobs)} jobs are due", file=sys.stderr)

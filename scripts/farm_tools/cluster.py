@@ -1,4 +1,5 @@
-"""A Slurm cluster of one node in a folder, for trying: no systemd, no cgroups, no accounting, nothing outside the folder."""
+"""A Slurm cluster of one node in a folder, for tests: no systemd, no cgroups, no accounting, no files outside the
+folder."""
 
 import getpass
 import os
@@ -12,7 +13,7 @@ from typing import Callable
 
 from records import identity
 
-DAEMONS = ("slurmd", "slurmctld", "munged")  # in the order in which they end
+DAEMONS = ("slurmd", "slurmctld", "munged")  # in the order in which they must be ended
 CONFIGURATION = Path(__file__).with_name("slurm.conf.template")
 
 
@@ -49,7 +50,7 @@ def start(folder: Path, *command: str):
 
 
 def up(folder: Path, processors: int) -> str:
-    """Starts the cluster; the line that a shell needs to use it."""
+    """Starts the cluster; returns the line that a shell needs to use it."""
     folder = folder.resolve()
     if any(running(folder, name) for name in DAEMONS):
         raise ClusterError(f"{folder}: its cluster is up; scripts/farm cluster down {folder} ends it")
@@ -74,7 +75,7 @@ def up(folder: Path, processors: int) -> str:
 
 
 def running(folder: Path, name: str) -> int:
-    """The process of a daemon of this cluster; 0 when it does not run."""
+    """Process id of a daemon of this cluster; 0 when it does not run."""
     try:
         process = int((folder / f"{name}.pid").read_text())
         return process if Path(f"/proc/{process}/comm").read_text().startswith(name) else 0
@@ -83,7 +84,7 @@ def running(folder: Path, name: str) -> int:
 
 
 def down(folder: Path):
-    """Cancels what runs and ends the cluster's own three daemons."""
+    """Cancels all jobs and ends the cluster's three daemons."""
     folder = folder.resolve()
     if running(folder, "slurmctld"):
         subprocess.run(["scancel", "--user", getpass.getuser()], env=environment(folder), capture_output=True)

@@ -26,13 +26,14 @@ def show_list(arguments) -> int:
 
 
 def verdict(jobs: List[Job], folder: Path) -> int:
-    """0 when each job has passed, now or before. A build that nothing asked for need not have run."""
+    """0 when each job has passed, now or earlier. Builds that no job of the list still needs may be without a
+    record."""
     found = results.read_folder(folder)
     return 1 if due.due(jobs, found) else 0
 
 
 def run(arguments) -> int:
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends the jobs, too
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that SIGTERM ends the jobs, too
     if arguments.workers < 1:
         raise JobError(f"--workers {arguments.workers}: must be 1 or more")
     arguments.out.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Which jobs a run has to do: those without a passed record of the same inputs."""
+"""The jobs that a run has to do: those without a passed record of the same inputs."""
 
 from typing import Dict, Iterable, List
 
@@ -22,11 +22,11 @@ def why(job: Job, found: results.Records) -> str:
 
 
 def due(jobs: Iterable[Job], found: results.Records) -> List[Job]:
-    """The jobs that are due, in order. A build of which nothing else is due is not."""
+    """The jobs that are due, in order. A build whose dependent jobs are all up to date is not due."""
     jobs = list(jobs)
     reasons: Dict[str, str] = {job.id: why(job, found) for job in jobs}
     wanted = {job.id for job in jobs if reasons[job.id] and (job.kind != "build" or is_alone(job, jobs))}
-    for job in reversed(jobs):  # those that need others come behind them
+    for job in reversed(jobs):  # jobs come after those that they need
         if job.id in wanted:
             wanted |= set(job.needs)
     return [job for job in jobs if reasons[job.id] and job.id in wanted]

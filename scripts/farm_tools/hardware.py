@@ -15,7 +15,7 @@ PLACEMENT_SEEDS = range(1, 6)
 
 
 def names_of(*command: str) -> List[str]:
-    """What a script of the project lists."""
+    """Names that a script of the project lists."""
     return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout.split()
 
 
@@ -29,7 +29,7 @@ def tools() -> List[Job]:
 
 
 def mutation(name: str, shard: int, shards: int, *options: str, build: str = "mutation") -> Job:
-    # scripts/mutate would build first, each shard once more.
+    # Not scripts/mutate, which would build again for each shard.
     return Job(name, "mutation", ("env", "PYTHONPATH=scripts", ".venv/bin/python3", "-B", "-m", "mutation.campaign", "--shard",
                                   f"{shard}/{shards}", "--jobs", "1", "--out", WORK, *options),
                MUTATION, (f"build-{build}",), result_file="results.csv", tools=COMPILERS, seconds=400)

@@ -7,9 +7,9 @@ from typing import Dict, Iterable, List, Tuple
 
 from records import record
 
-WORK = "{work}"  # in a command: the job's own folder
-SHORTEST, LONGEST = 20, 15 * 60  # seconds: below, starting a job costs too much; above, one job holds up the rest
-GUESS = 120  # seconds, for what was never measured
+WORK = "{work}"  # in a command: placeholder for the job's own folder
+SHORTEST, LONGEST = 20, 15 * 60  # seconds: a shorter job costs too much to start; a longer one delays the others
+GUESS = 120  # seconds, for jobs that were never measured
 
 
 class JobError(Exception):
@@ -19,25 +19,25 @@ class JobError(Exception):
 @dataclass(frozen=True)
 class Job:
     id: str
-    kind: str  # of records.record.KINDS
+    kind: str  # one of records.record.KINDS
     command: Tuple[str, ...]
-    inputs: Tuple[str, ...] = ()  # folders and files, as git names them, whose tracked contents decide the result
+    inputs: Tuple[str, ...] = ()  # folders and files, as git pathspecs, whose tracked contents decide the result
     needs: Tuple[str, ...] = ()  # ids of the builds whose result it uses
     environment: Dict[str, str] = field(default_factory=dict)
-    tests: str = ""  # the build whose ctest it runs: each job gets a folder of its own for ctest's logs
-    result_file: str = ""  # in the job's folder: counts are read from it, too
-    products: Tuple[str, ...] = ()  # of a build: what must exist, or it is made again
-    tools: Tuple[str, ...] = ("python3",)  # whose versions the record names
+    tests: str = ""  # the build whose ctest it runs; each job has its own folder for ctest's logs
+    result_file: str = ""  # file in the job's folder from which counts are read, too
+    products: Tuple[str, ...] = ()  # of a build: files that must exist, or it is made again
+    tools: Tuple[str, ...] = ("python3",)  # tools whose versions the record names
     seconds: float = GUESS  # expected
-    measured: bool = False  # whether these were measured
-    limit: int = 0  # seconds; 0: by the expected ones
+    measured: bool = False  # whether `seconds` was measured
+    limit: int = 0  # time limit in seconds; 0: derived from the expected seconds
 
     def time_limit(self) -> int:
-        """Seconds after which the job is ended. Wide: another machine may be slower, and busy."""
+        """Seconds after which the job is ended. The limit is wide, because another machine may be slower, and busy."""
         return self.limit or max(600, int(5 * self.seconds))
 
     def text(self) -> str:
-        """The command as somebody would type it."""
+        """The command as a user would type it."""
         shown = [f"build/{self.tests}" if self.tests and word == WORK else word.replace(WORK, f"build/farm/work/{self.id}")
                  for word in self.command]
         quoted = [f"'{word}'" if any(c in word for c in " |*()[]$\"") else word for word in shown]
@@ -45,7 +45,8 @@ class Job:
 
 
 def check(jobs: Iterable[Job]) -> List[Job]:
-    """The jobs, those that others need first. Refuses ids that are doubled, unknown or need each other."""
+    """The jobs, sorted so that each follows those that it needs. Raises JobError for duplicate ids, unknown needs and
+    cycles."""
     waiting: Dict[str, Job] = {}
     for job in jobs:
         if not record.JOB.fullmatch(job.id) or job.kind not in record.KINDS:
@@ -68,7 +69,7 @@ def check(jobs: Iterable[Job]) -> List[Job]:
 
 
 def with_needs(jobs: Iterable[Job], chosen: Iterable[Job]) -> List[Job]:
-    """The chosen ones and all that they need, in the order of the list."""
+    """The chosen jobs and all jobs that they need, in the order of the list."""
     jobs = list(jobs)
     by_id = {job.id: job for job in jobs}
     wanted, waiting = set(), [job.id for job in chosen]

@@ -1,4 +1,4 @@
-"""Runs jobs on this machine, so many at once."""
+"""Runs jobs on this machine, several at a time."""
 
 import sys
 import threading
@@ -15,7 +15,7 @@ from .run_job import Run
 
 
 class Progress:
-    """Says what begins and ends; on a terminal a last line with what is left."""
+    """Reports the beginning and the end of jobs; on a terminal, the last line shows the remaining ones."""
 
     def __init__(self, jobs: List[Job], workers: int):
         self.waiting, self.workers = {job.id: job for job in jobs}, workers
@@ -35,7 +35,7 @@ class Progress:
 
 
 class Machine:
-    """Runs a list of jobs; stop() from a signal's handler or another thread ends what runs."""
+    """Runs a list of jobs. stop() ends the running ones; a signal handler or another thread may call it."""
 
     def __init__(self, jobs: List[Job], folder: Path, workers: int):
         self.jobs, self.folder, self.workers = jobs, folder, workers
@@ -55,7 +55,8 @@ class Machine:
             thread.join()
 
     def run(self) -> results.Records:
-        """The records of what has ended; a job is not begun when what it needs did not pass."""
+        """Runs the jobs and returns the records of those that ended. A job does not start unless all that it needs has
+        passed."""
         waiting, unfinished = list(self.jobs), {job.id for job in self.jobs}
         with ThreadPoolExecutor(self.workers) as pool:
             try:
@@ -64,7 +65,7 @@ class Machine:
                     if self.running:
                         self._await(unfinished)
                     elif waiting:
-                        break  # nothing may begin any more: a build has failed
+                        break  # no job can start any more, because a build has failed
             except KeyboardInterrupt:
                 self.stop()
                 self._await_all(unfinished)
@@ -72,7 +73,7 @@ class Machine:
         return self.records
 
     def _say_what_is_left(self, waiting: List[Job]):
-        """The builds for want of which nothing more began."""
+        """Prints the number of jobs that were not started, and the failed builds that they need."""
         failed = [job for job, entry in self.records.items() if entry["result"] != "passed" and any(
             job in each.needs for each in waiting)]
         if waiting:

@@ -1,4 +1,4 @@
-"""The options of scripts/farm. `name` of what they give is the command, "slurm submit" for instance."""
+"""The options of scripts/farm. The field `name` of the result is the command, "slurm submit" for instance."""
 
 import argparse
 import os

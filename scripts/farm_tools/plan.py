@@ -7,12 +7,13 @@ from .job import LONGEST, SHORTEST, Job
 
 
 def total(jobs: List[Job]) -> float:
-    """Seconds of one worker."""
+    """Seconds that one worker needs."""
     return sum(job.seconds for job in jobs)
 
 
 def critical_path(jobs: List[Job]) -> Tuple[float, List[str]]:
-    """Seconds of the longest chain of jobs that need each other, and the chain. Jobs stand behind what they need."""
+    """Seconds of the longest chain of dependent jobs, and the chain. The list has each job after those that it
+    needs."""
     ends: Dict[str, Tuple[float, List[str]]] = {}
     for job in jobs:
         before = max((ends[need] for need in job.needs if need in ends), default=(0.0, []))
@@ -21,7 +22,7 @@ def critical_path(jobs: List[Job]) -> Tuple[float, List[str]]:
 
 
 def urgency(jobs: List[Job]) -> Dict[str, float]:
-    """Of each job the seconds of the longest chain that begins with it: the larger, the sooner it should begin."""
+    """For each job, the seconds of the longest chain that begins with it: the larger, the sooner it should start."""
     found = {job.id: job.seconds for job in jobs}
     for job in reversed(jobs):
         for need in job.needs:
@@ -32,13 +33,13 @@ def urgency(jobs: List[Job]) -> Dict[str, float]:
 
 
 def ready(waiting: List[Job], unfinished: set, order: Dict[str, float]) -> List[Job]:
-    """Of the waiting ones those that may begin, the most urgent first; builds before others."""
+    """The waiting jobs that can start, the most urgent first; builds before others."""
     free = [job for job in waiting if not unfinished.intersection(job.needs)]
     return sorted(free, key=lambda job: (job.kind != "build", -order[job.id], job.id))
 
 
 def makespan(jobs: List[Job], workers: int) -> float:
-    """Seconds until the last of so many workers is done, each taking the most urgent job that may begin."""
+    """Seconds until the last of so many workers is done, if each takes the most urgent job that can start."""
     order, waiting, unfinished = urgency(jobs), list(jobs), {job.id for job in jobs}
     running: List[Tuple[float, str]] = []
     now = 0.0
@@ -52,5 +53,5 @@ def makespan(jobs: List[Job], workers: int) -> float:
 
 
 def exceptions(jobs: List[Job]) -> List[Job]:
-    """Jobs that are shorter or longer than a job should be; builds may be."""
+    """Jobs outside SHORTEST to LONGEST; builds are exempt."""
     return [job for job in jobs if job.kind != "build" and not SHORTEST <= job.seconds <= LONGEST]

@@ -1,4 +1,4 @@
-"""Ends a job's process with all that it has started."""
+"""Ends a job's process and all processes that it has started."""
 
 import os
 import signal
@@ -6,12 +6,12 @@ import time
 from pathlib import Path
 from typing import List
 
-GRACE = 5  # seconds between asking and ending
+GRACE = 5  # seconds between SIGTERM and SIGKILL
 
 
 def of_session(session: int) -> List[int]:
-    """The processes of a session that are still there. A job is a session of its own; process groups would not do, since
-    scripts/prove and timeout(1) make groups of their own."""
+    """The processes of a session that still exist. Each job is a session. Process groups would not suffice, because
+    scripts/prove and timeout(1) create groups of their own."""
     found = []
     for path in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -33,7 +33,8 @@ def send(session: int, number: int):
 
 
 def end(session: int):
-    """Asks all processes of the session to end, and ends those that have not after the grace. Blocks until none is left."""
+    """Sends SIGTERM to all processes of the session, and SIGKILL to those that remain after GRACE. Blocks until none is
+    left."""
     send(session, signal.SIGTERM)
     until = time.monotonic() + GRACE
     while of_session(session):

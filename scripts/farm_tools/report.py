@@ -39,7 +39,7 @@ def arithmetic_text(jobs: List[Job], workers=WORKERS) -> str:
 
 
 def kinds_text(found: results.Records) -> str:
-    """For each kind how many jobs ended how, their times and what they counted."""
+    """For each kind: the number of jobs per result, their times and their counts."""
     by_kind: Dict[str, List[dict]] = defaultdict(list)
     for entry in found.values():
         by_kind[entry["kind"]].append(entry)

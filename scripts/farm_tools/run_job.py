@@ -14,7 +14,7 @@ from .job import WORK, Job
 
 ROOT = identity.ROOT
 TIMEOUT_STATUS, CANCELLED_STATUS = 124, 130
-# What the environment would change in a job that does not say so.
+# Removed from the environment, unless a job sets them.
 UNSET = ("TRAMMEL_LONG", "TRAMMEL_SEED", "TRAMMEL_STATE_SEED", "TRAMMEL_MUTANT")
 
 
@@ -27,7 +27,7 @@ class Run:
         self.log = self.folder / "logs" / f"{job.id}.log"
         self.lock = threading.Lock()
         self.process: Optional[subprocess.Popen] = None
-        self.why = ""  # it was ended: timeout or cancelled
+        self.why = ""  # reason for ending the job early: timeout or cancelled
 
     def cancel(self):
         self._end("cancelled")
@@ -40,7 +40,7 @@ class Run:
             processes.end(process.pid)
 
     def run(self) -> dict:
-        """The record, which lies in the folder then."""
+        """Runs the job; returns its record and stores it in the folder."""
         identity.forget()
         begun, commit, clean, digest = identity.now(), identity.commit(), identity.is_clean(), inputs_of(self.job)
         start = time.monotonic()
@@ -60,7 +60,7 @@ class Run:
         return entry
 
     def _process(self):
-        """Exit status, and the processor seconds of the process and of all that it waited for."""
+        """Exit status, and the processor seconds of the process and of the children that it waited for."""
         self._prepare()
         command = [word.replace(WORK, str(self.work)) for word in self.job.command]
         environment = {name: value for name, value in os.environ.items() if name not in UNSET} | self.job.environment
@@ -79,7 +79,7 @@ class Run:
             _, status, usage = os.wait4(self.process.pid, 0)
             watch.cancel()
         self.process.returncode = os.waitstatus_to_exitcode(status)
-        processes.end(self.process.pid)  # what it has left behind
+        processes.end(self.process.pid)  # children that the job left running
         return self.process.returncode, usage.ru_utime + usage.ru_stime
 
     def _prepare(self):
@@ -88,18 +88,18 @@ class Run:
         if self.job.result_file:
             (self.work / self.job.result_file).unlink(missing_ok=True)
         if self.job.tests:
-            # ctest writes its logs below the folder that it is called for, so jobs at the same time need several.
+            # ctest writes its logs below its test folder, so each concurrent job needs its own.
             (self.work / "CTestTestfile.cmake").write_text(f'subdirs("{ROOT}/build/{self.job.tests}")\n')
 
     def _verdict(self, status: int):
-        """Result and exit status; a signal counts as 128 and its number, as in a shell."""
+        """Result and exit status; a signal counts as 128 plus its number, as in a shell."""
         if self.why:
             return self.why, TIMEOUT_STATUS if self.why == "timeout" else CANCELLED_STATUS
         status = status if status >= 0 else 128 - status
         return ("passed" if status == 0 else "failed"), status
 
     def _figures(self) -> dict:
-        """By module or proof."""
+        """Figures by module or by proof."""
         path = self.work / self.job.result_file
         return {"coverage": coverage.of_file(path) if path.name == "coverage.json" else {},
                 "mutants": figures.mutants(path) if path.name == "results.csv" else {},

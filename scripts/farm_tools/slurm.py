@@ -1,5 +1,5 @@
-"""The list of jobs as Slurm job arrays. A task's place in the list is its index; the records are the result, whatever
-accounting the cluster has."""
+"""The list of jobs as Slurm job arrays. The index of a task is its place in the list. Results come from the records
+only, so the cluster needs no accounting."""
 
 import json
 import os
@@ -20,16 +20,16 @@ from .job import Job, JobError, read_list, write_list
 from .run_job import Run
 from .submission import SlurmError, Submission, call
 
-MARGIN = 2  # minutes that Slurm gives beyond a job's own limit: that one leaves a record
+MARGIN = 2  # minutes of Slurm's limit beyond the job's own limit, which comes first and leaves a record
 
 
 def submit(jobs: List[Job], folder: Path, partition: str = "") -> str:
-    """Submits the jobs, each kind as an array behind the builds that it needs."""
+    """Submits the jobs, each kind as an array that depends on the builds that it needs."""
     place = folder.resolve() / "slurm"
     if (place / "arrays.json").exists() and Submission(folder).active():
         raise SlurmError(f"{folder}: jobs of an earlier submission are under way: scripts/farm slurm wait or cancel first")
     (place / "logs").mkdir(parents=True, exist_ok=True)
-    # Builds that are not due are there already.
+    # Builds that are not due exist already.
     submitted = {job.id for job in jobs}
     jobs = [replace(job, needs=tuple(need for need in job.needs if need in submitted)) for job in jobs]
     write_list(place / "jobs.json", jobs)
@@ -47,7 +47,8 @@ def submit(jobs: List[Job], folder: Path, partition: str = "") -> str:
 
 
 def group_of(job: Job, index: int):
-    """Jobs of one array: builds alone and first, in the order of the list; others of a kind that need the same."""
+    """Sort key of the arrays. Each build is an array of its own and comes first, in the order of the list; other jobs
+    share an array if they have the same kind and the same needs."""
     return (0, index, ()) if job.kind == "build" else (1, job.kind, job.needs)
 
 
@@ -62,7 +63,7 @@ def command_of(jobs: List[Job], indices: List[int], needs: Set[str], place: Path
 
 
 def task(folder: Path) -> int:
-    """Runs the job of this array's task. Slurm's signal to end leaves a record, too."""
+    """Runs the job of this array's task. When Slurm sends a signal to end, the job leaves a record, too."""
     jobs = read_list(folder / "slurm" / "jobs.json")
     index = os.environ.get("SLURM_ARRAY_TASK_ID", "")
     if not index.isdigit() or int(index) >= len(jobs):
@@ -76,7 +77,7 @@ def task(folder: Path) -> int:
 
 
 def wait(folder: Path, seconds: float = 2.0) -> bool:
-    """Waits until all tasks have ended; whether all jobs that were submitted have passed."""
+    """Waits until all tasks have ended; returns whether all submitted jobs have passed."""
     submission, last = Submission(folder), ""
     while active := submission.active():
         running = sum(state == "RUNNING" for state in active.values())
@@ -94,7 +95,7 @@ def cancel(folder: Path):
 
 
 def requeue(folder: Path) -> List[str]:
-    """Runs again what has ended without a pass, while Slurm still knows it; the jobs."""
+    """Requeues the jobs that have ended without a pass, while Slurm still knows them; returns their ids."""
     submission = Submission(folder)
     active, found = submission.active(), results.read_folder(submission.folder)
     again = []

@@ -1,4 +1,4 @@
-"""What was submitted to Slurm for a folder of results, and how it stands."""
+"""The jobs submitted to Slurm for a folder of results, and their states."""
 
 import json
 import subprocess
@@ -13,7 +13,7 @@ ACTIVE = "PENDING,CONFIGURING,RUNNING,SUSPENDED,COMPLETING,REQUEUED,REQUEUE_HOLD
 
 
 class SlurmError(Exception):
-    """Slurm refused something, or is not there."""
+    """Slurm refused a command, or is not installed."""
 
 
 def call(*command: str) -> str:
@@ -28,7 +28,7 @@ def call(*command: str) -> str:
 
 
 class Submission:
-    """What was submitted for a folder of results: DIR/slurm/jobs.json, and the arrays with their indices."""
+    """The jobs submitted for a folder of results: DIR/slurm/jobs.json, and the arrays with their indices."""
 
     def __init__(self, folder: Path):
         self.folder = folder.resolve()
@@ -52,7 +52,8 @@ class Submission:
         return sorted(index for indices in self.arrays.values() for index in indices)
 
     def states(self) -> Dict[str, str]:
-        """Of each job that was submitted: Slurm's state while it is under way, then the record's result, or "no record"."""
+        """For each submitted job: Slurm's state while it is active, afterwards the result of its record, or "no
+        record"."""
         active, found = self.active(), results.read_folder(self.folder)
         ended = {job.id: found[job.id]["result"] if job.id in found else "no record" for job in self.jobs}
         return {self.jobs[index].id: active.get(index, ended[self.jobs[index].id]).lower() for index in self.submitted()}

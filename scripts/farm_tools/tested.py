@@ -9,23 +9,23 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = "scripts/farm_tools/build"
 COMPILERS = ("g++", "cmake", "verilator")
 
-# What a build is made of, and so all that runs in it.
+# Sources of a build, and so inputs of every job that runs in it.
 SOURCES = ("CMakeLists.txt", "CMakePresets.json", "cmake", "rtl", "frames", "cpp-model", "driver", "transport", "host", "sim",
            "world", "serve", "bindings", "clients", "apps", "web", "boards", "examples", "tests", "verif", ":!verif/formal",
            ":!verif/evidence", "requirements.txt", BUILD)
-# Without what only the host's side has.
+# SOURCES without the parts that only the host software uses.
 LOCKSTEP = ("CMakeLists.txt", "cmake", "rtl", "frames", "cpp-model", "driver", "sim", "boards", "tests/support", "verif/lockstep",
             "requirements.txt")
 COVERED = (*SOURCES, "scripts/coverage", "scripts/coverage_tools")
 LIMIT_OF_BUILDS = 4 * 3600
 
-# Locksteps whose scenarios are drawn at random, by the seed; all others run once.
+# Locksteps that draw their scenarios at random, from the seed; all others run once.
 RANDOM = ("^lockstep[.].*(Random|Storm|EqualsModelInEvery|EveryOutputInEvery|AllHostsAtOnce|AnyLevels|BouncingLevels|"
           "BouncingInputs|CapturesAndDrops|LockstepUnderTraffic|OnTimesFollow)")
 WHOLE_CARDS = "^lockstep[.](card[.]|card_engines|motion_core)"
 NO_LOCKSTEP = "^lockstep[.](checker|selftest)"
 COVERAGE_SAMPLE = "^(step_shaper|time_base)$"
-# Seconds below are guesses until somebody has measured them: scripts/farm expect.
+# Seconds below are guesses until scripts/farm expect has measured them.
 # Five seeds of four times the length: as many clocks as scripts/test --long lockstep.
 SEEDS, LENGTH = range(1, 6), "4"
 STOP_SHARDS, SANITIZER_SHARDS = 4, 16
@@ -54,7 +54,8 @@ def builds() -> List[Job]:
         return Job(f"build-{name}", "build", (BUILD, *(command or (name,))), SOURCES, needs, products=products, tools=COMPILERS,
                    seconds=seconds, limit=LIMIT_OF_BUILDS)
 
-    # One after the other: two builds in one folder wait for each other, and each takes all processors of its machine.
+    # The builds need each other, so that they run one after the other: two builds in one folder would wait for each
+    # other, and each uses all processors of its machine.
     return [made("release", products=("build/release/bin/trammel",), seconds=1200),
             made("mutation-sample", ("build-release",), ("build/release/mutation/sample_judges.json",)),
             made("mutation", ("build-mutation-sample",), ("build/release/mutation/judges.json",)),
@@ -98,7 +99,7 @@ def fuzzers() -> List[Job]:
 
 
 def program(name: str, job: str = "", long_run: bool = True) -> Job:
-    # Not by ctest, whose time-outs for long runs are set when the tests are linked.
+    # Not through ctest: the time-outs of its tests for long runs are set when the tests are linked.
     return Job(job or f"program-{name}", "program",
                ("build/release/bin/test_programs", f"--gtest_filter={PROGRAMS[name]}"), SOURCES, ("build-release",),
                {"TRAMMEL_LONG": "1"} if long_run else {}, tools=COMPILERS, seconds=300)

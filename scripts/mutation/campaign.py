@@ -1,5 +1,5 @@
-"""Tries every mutant of the RTL: one that no judge kills is listed, and the exit status is 1 when it has no reason to live
-in verif/mutation/equivalents. All mutants lie in one build; a run is a process with another number."""
+"""Tries every mutant of the RTL and lists those that no judge kills. Exit status 1 when one of them has no reason in
+verif/mutation/equivalents. One build holds all mutants; each run is a process with the number of one mutant."""
 
 import argparse
 import csv
@@ -60,14 +60,16 @@ def chosen(mutants: List[dict], all_judges: List[judges.Judge], arguments, liste
             sys.exit(f"mutate: no mutants of a module {', '.join(sorted(unknown))}")
         mutants = [mutant for mutant in mutants if mutant["module"] in arguments.module]
     if arguments.sample is not None and arguments.sample < len(mutants):
-        # By name, so that a change of the RTL leaves the rest of the sample as it was. Not what is listed: one that lives
-        # takes as long as twenty others; and not what joins the blocks, which the whole card alone shows.
+        # Drawn by id, so that a change of the RTL leaves the rest of the sample as it was. Listed mutants are left out,
+        # because one that lives takes as long as twenty others. So are mutants of modules that only connect blocks,
+        # because only locksteps of the whole card judge them.
         blocks = {file for judge in all_judges if judge.of_a_block() for file in judge.sources}
         mutants = [mutant for mutant in mutants if mutant["id"] not in listed and mutant["file"] in blocks]
         drawn = {mutant["id"]: hashlib.sha256(f"{arguments.seed} {mutant['id']}".encode()).digest() for mutant in mutants}
         mutants = sorted(mutants, key=lambda mutant: drawn[mutant["id"]])[:arguments.sample]
     if arguments.shard:
-        # Neighbours: those of one file have the same judges, whose sound runs cost as much as many mutants.
+        # A shard takes neighbours: mutants of one file have the same judges, and a judge's run on the sound design
+        # costs as much as many mutants.
         number, count = arguments.shard
         mutants = sorted(mutants, key=lambda mutant: (mutant["file"], mutant["number"]))
         mutants = mutants[len(mutants) * (number - 1) // count:len(mutants) * number // count]
@@ -75,7 +77,7 @@ def chosen(mutants: List[dict], all_judges: List[judges.Judge], arguments, liste
 
 
 class Results:
-    """results.csv, a row as soon as there is a verdict."""
+    """results.csv; a row is written as soon as there is a verdict."""
 
     def __init__(self, folder: Path, build: str, resume: bool):
         folder.mkdir(parents=True, exist_ok=True)
@@ -144,7 +146,7 @@ def show(mutant: dict) -> str:
 
 
 def report(mutants, results, listed) -> int:
-    """The summary; the number of findings."""
+    """Prints the summary; returns the number of findings."""
     lived = [mutant for mutant in mutants if results.how(mutant) == "lived"]
     unlisted = [mutant for mutant in lived if mutant["id"] not in listed]
     wrong = [mutant for mutant in mutants if mutant["id"] in listed and results.how(mutant) != "lived"]

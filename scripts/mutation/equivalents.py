@@ -1,4 +1,4 @@
-"""Mutants that cannot change anything visible, each with its reason: verif/mutation/equivalents."""
+"""Equivalent mutants, which cannot change any output, each with its reason: verif/mutation/equivalents."""
 
 import tomllib
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ KEYS = [{"module", "original", "mutated", "reason"}, {"module", "part", "reason"
 
 
 class EquivalentsError(Exception):
-    """An entry that says too little, or that matches nothing."""
+    """An entry that is incomplete, or that matches no mutant."""
 
 
 @dataclass
@@ -17,8 +17,8 @@ class Equivalent:
     modules: List[str]
     original: str
     mutated: List[str]
-    nth: Optional[int]  # none: every one with these texts
-    part: str  # what all mutants of a family have in their mutated text; with it no texts
+    nth: Optional[int]  # None: every mutant with these texts
+    part: str  # part of the mutated text that a family of mutants has in common; replaces `original` and `mutated`
     reason: str
 
     def covers(self, mutant: dict) -> bool:
@@ -52,7 +52,7 @@ def as_list(value) -> List[str]:
 
 
 def by_mutant(entries: List[Equivalent], mutants: List[dict]) -> Dict[str, Equivalent]:
-    """For the id of each mutant that is listed its entry. Every text and module of every entry must match a mutant."""
+    """The entry of each listed mutant, by the mutant's id. Every text and module of every entry must match a mutant."""
     listed = {}
     for entry in entries:
         covered = [mutant for mutant in mutants if entry.covers(mutant)]

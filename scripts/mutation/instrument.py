@@ -1,8 +1,8 @@
 """Writes a copy of the RTL that holds every mutant behind a run-time selector.
 
-A process, a continuous assignment or a function's statement is a group: it stands in the copy twice, as it was and with
-its mutants, and only the group that holds the chosen mutant runs the second form. So the copy with mutant 0, the sound
-design, is nearly as quick as the design itself.
+A process, a continuous assignment or a function's statement is a group. The copy has each group twice: unchanged, and
+with its mutants. Only the group of the chosen mutant runs the second form, so the copy with mutant 0, the sound design,
+is nearly as fast as the design itself.
 """
 
 import argparse
@@ -22,14 +22,16 @@ from .operators import Alternative, Names, kind_of
 MEMBER_BITS = 16
 PROCESSES = {"AlwaysFFBlock", "AlwaysCombBlock", "AlwaysBlock"}
 ASSIGNMENTS = {"NonblockingAssignmentExpression", "AssignmentExpression"}
-# Calls that are worked out before the run.
+# Calls that are evaluated at elaboration.
 CONSTANT_CALLS = {"$clog2", "$bits"}
-# Where a constant is needed: parameters, ranges, generate conditions. What is called there can ask for no mutant.
+# Places that need a constant: parameters, ranges, generate conditions. A function called there cannot ask for the
+# mutant.
 CONSTANT_PLACES = {"ParameterDeclaration", "ParameterValueAssignment", "RangeDimensionSpecifier", "IfGenerate",
                    "LoopGenerate"}
 
-# The mutant that runs: its group and its place in the group; 0 is the sound design. A package would show in the class
-# that Verilator writes, which must stay that of the sound design: the tests are compiled against it once.
+# The chosen mutant: its group and its place in the group; 0 is the sound design. Each module declares them, because a
+# package would change the class that Verilator writes. That class must equal the sound design's, because the tests are
+# compiled against it once.
 SELECTOR = """
   import "DPI-C" function int trammel_mutant();
   int mutant_number = trammel_mutant();
@@ -50,7 +52,7 @@ class Mutant:
     kind: str
     original: str
     mutated: str
-    nth: int  # of those in the module with equal texts, from 1
+    nth: int  # number among the mutants of the module with equal texts, from 1
 
 
 def nodes(root):
@@ -102,7 +104,7 @@ def note_variable(names, types, declarator, data_type):
             names.enumerated.add(variable)
         return
     bounds = re.findall(r"\[\s*(\d+)\s*:\s*0\s*\]", str(data_type))
-    # One packed dimension and no other.
+    # Exactly one packed dimension, and no unpacked one.
     if len(bounds) == 1 and str(data_type).count("[") == 1 and "[" not in str(declarator):
         names.top_bit[variable] = int(bounds[0])
 
@@ -115,7 +117,8 @@ class Instrumenter:
         self.file = file
         self.group = first_group - 1
         self.mutants: List[Mutant] = []
-        # Offsets are bytes: what is not ASCII stands in comments, and one byte of it is as good as another.
+        # Offsets count bytes. Only comments have characters outside ASCII, and replacing each of their bytes by "?"
+        # keeps offsets.
         self.tree = syntax.SyntaxTree.fromText("".join(c if c.isascii() else "?" for c in text))
         self.seen = {}
 
@@ -129,7 +132,7 @@ class Instrumenter:
         return self.text[start:end]
 
     def replaced(self, node, parts) -> str:
-        """The node's text with some parts, (node, text), in other words."""
+        """The node's text with some parts, (node, text), replaced by other texts."""
         start, end = self.span(node)
         result, position = "", start
         for part, text in parts:
@@ -144,7 +147,7 @@ class Instrumenter:
         self.member = 0
 
     def add(self, node, alternative: Alternative, whole: str = None) -> int:
-        """Numbers a mutant: `alternative` in the place of `node` within the construct under work."""
+        """Adds a mutant, `alternative` in place of `node` within the current construct; returns its number."""
         self.member += 1
         start, end = self.span(node)
         first, last = self.construct
@@ -284,7 +287,8 @@ class Instrumenter:
         return self.replaced(node, parts)
 
     def swapped_labels(self, node):
-        """Each label with the next one's place; by the label's span, the text that stands for it."""
+        """Mutants in which a label and the next one change places; returns the instrumented text of each label, by its
+        span."""
         single = []
         for item in node.items:
             if kind_of(item) == "DefaultCaseItem":
@@ -303,7 +307,7 @@ class Instrumenter:
 
     # --- members of a module ---
     def twice(self, node, instrumented: str) -> str:
-        """A process's statement: as it was, and with its mutants."""
+        """A statement twice: unchanged, and with its mutants."""
         return (f"begin if (mutant_group != {self.group}) begin {self.plain(node)} end\n"
                 f"else begin : mutated_{self.group}\n{instrumented} end end")
 
@@ -315,7 +319,7 @@ class Instrumenter:
         return body, self.twice(body, self.statement(body))
 
     def continuous(self, node):
-        # What is named unused is there for lint alone.
+        # Signals named unused... exist only for lint.
         for assignment in node.assignments:
             if kind_of(assignment) != "AssignmentExpression" or self.plain(assignment.left).startswith("unused"):
                 continue
@@ -342,7 +346,8 @@ class Instrumenter:
             self.alone = False
 
     def connection(self, instance: str, node):
-        """An input's connection. Clocks stay as they are; what is an output is told by its name."""
+        """The instrumented connection of an input. Clocks get no mutants. The suffix of a port's name tells its
+        direction."""
         port = node.name.valueText
         if not port.endswith("_i") or port.startswith("clk"):
             return None

@@ -1,4 +1,4 @@
-"""Judges: executables whose tests pass over the sound design; each runs in a process with the number of one mutant."""
+"""Judges: test executables that pass on the sound design. Each run is a process with the number of one mutant."""
 
 import hashlib
 import json
@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, List, Optional
 
-MISMATCH = "repeat with TRAMMEL_SEED="  # the line that every report of a lockstep has
-BLOCK_SOURCES = 20  # a block's lockstep reads at most so many; that of the motion core reads more than twice as many
+MISMATCH = "repeat with TRAMMEL_SEED="  # text in every mismatch report of a lockstep
+BLOCK_SOURCES = 20  # a block's lockstep reads at most this many; the motion core's reads more than twice as many
 TESTS_PASSED = re.compile(r"\[  PASSED  \] [1-9]")  # a filter that matches no test passes as well
 
 
 class SoundDesignRefused(Exception):
-    """A judge finds fault with mutant 0."""
+    """A judge fails on mutant 0, the sound design."""
 
 
 @dataclass
@@ -27,19 +27,20 @@ class Judge:
     name: str
     executable: str
     sources: List[str]  # relative to the folder of the RTL
-    arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
-    length: str = ""  # of its random scenarios, as a factor: TRAMMEL_LONG
-    last_resort: bool = False  # a long run: tries no mutant that is listed as equivalent
-    seconds: Optional[float] = None  # of processor time for the sound design
+    arguments: List[str] = field(default_factory=list)  # GoogleTest options that select tests
+    length: str = ""  # factor for the length of random scenarios: TRAMMEL_LONG
+    last_resort: bool = False  # a long run, which is not tried on mutants listed as equivalent
+    seconds: Optional[float] = None  # processor time of the run on the sound design
     first: threading.Lock = field(default_factory=threading.Lock)
 
     def of_a_block(self) -> bool:
         return len(self.sources) <= BLOCK_SOURCES
 
     def limit(self) -> int:
-        """Processor seconds after which a run has hung: no other work on the machine uses them up."""
+        """Processor seconds after which a run counts as hung; unlike wall-clock time, they do not depend on the
+        machine's load."""
         with self.first:
-            if self.seconds is None:  # a last resort that is asked for the first time
+            if self.seconds is None:  # the first use of a last resort
                 try_sound_design(self)
         return math.ceil(5 * self.seconds + 2)
 
@@ -57,14 +58,14 @@ class Verdict:
 
 
 def read_judges(path: Path) -> List[Judge]:
-    """Those that see little of the design first: they are quick and say most about it. Of equal ones in the file's order;
-    last resorts come last."""
+    """Judges with few sources come first, because they are fast and find most mutants of these sources. Equal ones keep
+    the order of the file; last resorts come last."""
     judges = [Judge(**entry) for entry in json.loads(path.read_text())]
     return sorted(judges, key=lambda judge: (judge.last_resort, len(judge.sources)))
 
 
 def fingerprint(judges: List[Judge]) -> str:
-    """Changes with anything that could change a verdict."""
+    """A hash over everything that can change a verdict."""
     digest = hashlib.sha256()
     for judge in judges:
         digest.update(f"{judge.name} {judge.arguments} {judge.length}".encode() + Path(judge.executable).read_bytes())
@@ -84,7 +85,7 @@ def run(judge: Judge, number: int, limit: int) -> Verdict:
     process = subprocess.Popen([judge.executable, "--gtest_fail_fast", "--gtest_brief=1", *judge.arguments],
                                env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, preexec_fn=limits,
                                errors="replace")
-    # One that sleeps uses no processor time; it is given ten times as long.
+    # A process that sleeps uses no processor time, so it is killed after ten times the limit in real time.
     watch = threading.Timer(10 * limit, process.kill)
     watch.start()
     with process.stdout:
@@ -107,7 +108,7 @@ def judged(status: int, output: str) -> str:
 
 
 def try_sound_design(judge: Judge):
-    """Mutant 0 must pass; how long it takes is the measure for the others."""
+    """Mutant 0 must pass; its time determines the limit for the others."""
     verdict = run(judge, 0, 3600)
     if verdict.killed:
         raise SoundDesignRefused(f"judge {judge.name} finds fault with the sound design ({verdict.how}): "
@@ -116,7 +117,7 @@ def try_sound_design(judge: Judge):
 
 
 def try_mutant(judges: List[Judge], number: int, file: str, listed: bool) -> Verdict:
-    """The first judge that kills it; "lived" when none does."""
+    """The verdict of the first judge that kills the mutant; "lived" when none does."""
     seconds = 0.0
     for judge in judges:
         if file not in judge.sources or (listed and judge.last_resort):

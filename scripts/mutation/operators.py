@@ -1,7 +1,7 @@
-"""What may be wrong at one point of an expression: for a node of the syntax tree the texts that could stand in its place.
+"""Mutation operators: for a node of the syntax tree, the texts that replace it in mutants.
 
-The operators are of the kinds that a slip of the pen makes: another operator, an operand forgotten, a constant one off,
-a neighbouring bit, a condition turned round or stuck. A change that another operator makes as well is left out.
+They imitate typing mistakes: another operator, a forgotten operand, a constant off by one, a neighbouring bit, a
+negated or stuck condition. A change that another operator makes, too, is left out.
 """
 
 import re
@@ -25,7 +25,7 @@ BINARY = {
     "GreaterThanExpression": (">", [">=", "<="], ""),
     "GreaterThanEqualExpression": (">=", [">", "<"], ""),
 }
-# Their operators give the opposite truth as well, so a condition of this form needs no negation of its own.
+# The mutants of these operators include the negation, so a condition of this form needs no mutant for it.
 COMPARISONS = {kind for kind, (_, _, operands) in BINARY.items() if not operands}
 NEGATIONS = {"UnaryBitwiseNotExpression": "~", "UnaryLogicalNotExpression": "!", "UnaryMinusExpression": "-"}
 REDUCTIONS = {"UnaryBitwiseAndExpression": ("&", "|"), "UnaryBitwiseOrExpression": ("|", "&"),
@@ -38,7 +38,7 @@ FORMATS = {"b": "b", "o": "o", "d": "d", "h": "X"}
 
 @dataclass
 class Alternative:
-    """Another text for a node."""
+    """A text that replaces a node."""
 
     kind: str
     text: str
@@ -46,10 +46,10 @@ class Alternative:
 
 @dataclass
 class Names:
-    """What a module declares, as far as it decides what may be changed."""
+    """The declarations of a module that decide which mutants are legal."""
 
     constants: Set[str] = field(default_factory=set)  # parameters
-    members: Dict[str, List[str]] = field(default_factory=dict)  # enumeration constant: all of its enumeration
+    members: Dict[str, List[str]] = field(default_factory=dict)  # enumeration constant: all of its type
     enumerated: Set[str] = field(default_factory=set)  # variables of an enumeration
     top_bit: Dict[str, int] = field(default_factory=dict)  # of a vector declared with a literal range [n:0]
 
@@ -83,7 +83,7 @@ def unary(node, text_of) -> List[Alternative]:
 
 
 def condition(node, text_of) -> List[Alternative]:
-    """The condition of an if or of a choice."""
+    """The condition of an if statement or of a conditional operator."""
     inner = kind_of(unwrapped(node))
     result = []
     if inner not in COMPARISONS and inner not in NEGATIONS:
@@ -108,7 +108,8 @@ def literal(text: str) -> List[Alternative]:
 
 
 def name(text: str, names: Names, is_value: bool) -> List[Alternative]:
-    """A plain name. A value is inverted where no operator about it does as much."""
+    """A plain name. A name used as a value (`is_value`) is inverted, unless an operator around it has that mutant
+    already."""
     if text in names.members:
         all_of_it = names.members[text]
         return [Alternative("constant", all_of_it[(all_of_it.index(text) + 1) % len(all_of_it)])]
@@ -120,7 +121,7 @@ def name(text: str, names: Names, is_value: bool) -> List[Alternative]:
 
 
 def select(node, names: Names, text_of, is_value: bool) -> List[Alternative]:
-    """A bit or a part of a vector: its neighbours."""
+    """A bit-select or part-select: its neighbours."""
     identifier, text = node.identifier.valueText, text_of(node)
     if identifier in names.constants:
         return [Alternative("constant", f"({text} ^ 1'b1)")]
@@ -138,7 +139,7 @@ def select(node, names: Names, text_of, is_value: bool) -> List[Alternative]:
 
 
 def literal_bounds(selector) -> Optional[tuple]:
-    """(high, low) of a selector that is written in plain numbers."""
+    """(high, low) of a selector that consists of plain numbers, else None."""
     kind = kind_of(selector) if selector is not None else ""
     if kind == "BitSelect":
         parts = [selector.expr, selector.expr]

@@ -1,4 +1,4 @@
-"""Writes every mutant of one RTL file as a file of its own, for a judge that reads text: a proof."""
+"""Writes every mutant of one RTL file as a separate file, for judges that read source text: proofs."""
 
 import argparse
 import re
@@ -11,8 +11,9 @@ from .instrument import Mutant, instrument
 
 
 def mutated(text: str, mutant: Mutant) -> Optional[str]:
-    """The whole text with the mutant's slip; None for a slip that is no replaced text (swapped labels, connections)."""
-    # The mutant has its text with the spaces of the parser.
+    """The whole text with the mutant's change; None when the change is no replaced text (swapped labels,
+    connections)."""
+    # The spaces of the mutant's text come from the parser, so they do not count.
     pattern = r"\s*".join(re.escape(token) for token in re.findall(r"\w+|\S", mutant.original))
     places = list(re.finditer(pattern, text))
     if len(places) < mutant.nth:

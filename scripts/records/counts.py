@@ -1,4 +1,5 @@
-"""How much a run has compared: from the lines that tests print, and from the results of scripts/mutate and scripts/prove."""
+"""Counts of what a run has compared, from the lines that tests print and the results of scripts/mutate and
+scripts/prove."""
 
 import csv
 import re
@@ -8,17 +9,17 @@ from typing import Dict
 
 from . import figures
 
-# Lines "NUMBER TEXT ...", in scripts/test "compared NUMBER TEXT". Their numbers are added.
+# Lines "NUMBER TEXT ...", and "compared NUMBER TEXT" of scripts/test. Their numbers are added up.
 COUNTED = ("clocks of random traffic", "cycles of arcs", "stops judged", "of them with random inputs",
            "frames through a bad link", "frames of random contents", "frames spoiled", "clocks of soak",
            "clocks compared in lockstep")
 # As scripts/coverage prints them at its end.
 POINTS = tuple(f"{kind} points{how}" for kind in ("line", "branch", "toggle") for how in ("", " covered", " waived"))
 POINTS += tuple(f"C++ {what}{how}" for what in ("lines", "branches") for how in ("", " covered"))
-# Figures of a placement, which stand for themselves.
+# Figures of a placement, which are not added up.
 MEASURED = ("cells", "cells at most", "kHz", "kHz at least")
 LINE = re.compile(r"^(?:\d+: |compared +)?(\d+) (.+)$", re.M)
-# What programs say about themselves at their end; the groups have the names of the counts.
+# Summaries that programs print at their end; the groups have the names of the counts.
 SUMMARIES = (
     re.compile(r"tests passed, (?P<tests_failed>\d+) tests? failed out of (?P<tests>\d+)"),
     re.compile(r"^(?P<mutants>\d+) mutants: ", re.M),
@@ -31,7 +32,8 @@ SKIPPED = re.compile(r"^\t *\d+ - .* \((?:Skipped|Disabled)\)$", re.M)
 
 
 def add_up(entry: dict) -> bool:
-    """Whether a record's counts may be summed with others'. Those of a placement stand for themselves; a build compares nothing."""
+    """Whether a record's counts may be added to others'. A placement has measurements instead; a build compares
+    nothing."""
     return entry["kind"] not in ("placement", "build")
 
 
@@ -59,14 +61,14 @@ def of_text(text: str) -> Dict[str, int]:
 
 
 def of_mutants(path: Path) -> Dict[str, int]:
-    """From results.csv: how many mutants ended how."""
+    """From results.csv: the number of mutants per verdict."""
     with path.open(newline="") as file:
         rows = [row["how"] for row in csv.DictReader(file)]
     return {"mutants": len(rows), **{f"mutants {how}": number for how, number in sorted(Counter(rows).items())}}
 
 
 def of_proofs(path: Path) -> Dict[str, int]:
-    """From the list of results: runs, and how many ended as they had to."""
+    """From the list of results: the number of runs, and of those that ended as expected."""
     lines = path.read_text().splitlines()
     return {"proof_runs": len(lines), "proof_runs_as_expected": lines.count("ok")}
 
@@ -76,5 +78,5 @@ OF_FILES = {"results.csv": of_mutants, "results": of_proofs, "coverage.json": la
 
 
 def of_file(path: Path) -> Dict[str, int]:
-    """Of a result file, by its name; nothing when the run did not come as far as writing it."""
+    """Counts of a result file, by its name; empty when the run ended before writing it."""
     return OF_FILES[path.name](path) if path.exists() else {}

@@ -1,4 +1,4 @@
-"""Each module's coverage, from what scripts/coverage has written."""
+"""Each module's coverage, from the results of scripts/coverage."""
 
 import json
 from pathlib import Path
@@ -8,7 +8,8 @@ NUMBERS = ("points", "covered", "waived")
 
 
 def of_file(path: Path) -> dict:
-    """By module and kind; nothing of a part of the locksteps, which says nothing about a module, nor of a run that wrote nothing."""
+    """By module and kind. Empty for a part of the locksteps, which does not judge modules, and for a run that wrote
+    nothing."""
     found = json.loads(path.read_text()) if path.exists() else {}
     if not found.get("whole"):
         return {}
@@ -16,7 +17,7 @@ def of_file(path: Path) -> dict:
 
 
 def is_right(value) -> bool:
-    """Whether a record may hold it."""
+    """Whether a record may have this value."""
     return isinstance(value, dict) and all(
         isinstance(kinds, dict) and all(kind in KINDS and is_figure(figure) for kind, figure in kinds.items())
         for kinds in value.values())

@@ -1,11 +1,11 @@
-"""A run's figures by module or by proof, which the page of the evidence shows beside each module."""
+"""A run's figures by module or by proof, which the evidence page shows for each module."""
 
 import csv
 import re
 from pathlib import Path
 from typing import Callable, Dict
 
-# Of ctest's whole log: a test of the lockstep NAME begins, and what it prints at its end.
+# Lines of ctest's whole log: the beginning of a test of the lockstep NAME, and the count that it prints at its end.
 LOCKSTEP = re.compile(r"^\d+/\d+ Testing: (?:lockstep\.(\w+)\.)?|^(\d+) clocks compared in lockstep$", re.M)
 PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) +(\S+).* s  (ok|FAILED)", re.M)
 MUTANTS = ("tried", "killed")
@@ -13,7 +13,7 @@ PROOFS = ("runs", "as_expected")
 
 
 def mutants(path: Path) -> dict:
-    """By module, from a campaign's results.csv; nothing when the run did not come as far as writing it."""
+    """By module, from a campaign's results.csv; empty when the run ended before writing it."""
     found: dict = {}
     if path.exists():
         with path.open(newline="") as file:
@@ -25,7 +25,7 @@ def mutants(path: Path) -> dict:
 
 
 def proofs(log: str) -> dict:
-    """By proof, with its covers and seeded bugs, from what scripts/prove prints."""
+    """By proof, with its covers and seeded bugs, from the output of scripts/prove."""
     found: dict = {}
     for name, result in PROOF_RUN.findall(log):
         figure = found.setdefault(name, dict.fromkeys(PROOFS, 0))
@@ -47,7 +47,7 @@ def clocks(log: str) -> dict:
 
 
 def _has(names) -> Callable[[object], bool]:
-    """Whether a record may hold it: integers with these names, by module or proof."""
+    """A check for record fields: integers with these names, by module or proof."""
     return lambda value: isinstance(value, dict) and all(
         isinstance(figure, dict) and set(figure) == set(names) and all(type(number) is int for number in figure.values())
         for figure in value.values())

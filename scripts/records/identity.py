@@ -1,4 +1,4 @@
-"""What a result depends on: the commit, the contents of tracked files, the machine and its tools."""
+"""Inputs of a result: the commit, the contents of tracked files, the machine and its tools."""
 
 import hashlib
 import os
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Dict, Iterable, Tuple
 
 ROOT = Path(__file__).resolve().parents[2]
-EVIDENCE = "verif/evidence"  # holds results alone: writing one makes no other result stale
+EVIDENCE = "verif/evidence"  # has only results: writing one makes no other result stale
 
 
 def git(*arguments: str) -> str:
@@ -23,7 +23,7 @@ def commit() -> str:
 
 
 def is_clean() -> bool:
-    """Whether the work tree is that of the commit: no file changed, none added."""
+    """Whether the work tree equals the commit: no file changed, none added."""
     return not git("status", "--porcelain", "--", ".", f":!{EVIDENCE}")
 
 
@@ -41,7 +41,7 @@ def _of_files(folders: Tuple[str, ...]) -> str:
 
 
 def forget():
-    """Files may have changed: inputs() reads them anew."""
+    """Makes inputs() read the files again, because they may have changed."""
     _of_files.cache_clear()
 
 
@@ -62,7 +62,8 @@ def machine() -> dict:
 
 @lru_cache(maxsize=None)
 def version(tool: str) -> str:
-    """The first number of the tool's version that has a point in it; "missing" where the tool is."""
+    """The first number with a decimal point that the tool prints as its version; "missing" when there is no such
+    tool."""
     option = "-V" if tool.endswith("yosys") else "--version"
     try:
         done = subprocess.run([tool, option], capture_output=True, text=True, timeout=60)

@@ -13,7 +13,7 @@ RELEASE = re.compile(r"(\d+)\.(\d+)\.(\d+)-rc(\d+)")
 
 
 class KeepError(Exception):
-    """Something that is not kept; the text says what to do."""
+    """A record that cannot be kept; the text says what to do."""
 
 
 def project_version() -> str:
@@ -24,7 +24,7 @@ def project_version() -> str:
 
 
 def newest(folder: Path) -> str:
-    """The release candidate with the highest numbers; the first of this version where there is none."""
+    """The release candidate with the highest numbers; the first candidate of this version if there is none."""
     releases = [match for path in folder.glob("*.json") if (match := RELEASE.fullmatch(path.stem))]
     if not releases:
         return f"{project_version()}-rc1"
@@ -67,7 +67,7 @@ def files_of(names: Iterable[Path]) -> List[Path]:
 
 
 def keep(names: Iterable[Path], release: str, folder: Path = FOLDER) -> str:
-    """Merges the records into the release's file; what was done, as a text. Nothing is written when one is refused."""
+    """Merges the records into the release's file; returns a summary. Writes nothing when it refuses a record."""
     if not RELEASE.fullmatch(release):
         raise KeepError(f"release {release}: must be VERSION-rcNUMBER, {project_version()}-rc1 for instance")
     entries = [record.read(file) for file in files_of(names)]

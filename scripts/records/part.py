@@ -1,4 +1,4 @@
-"""Writes the record of a run of scripts/test or of one of its parts; scripts/test calls this when that has ended."""
+"""Writes the record of a run of scripts/test or of one of its parts; scripts/test calls this after the run."""
 
 import argparse
 import sys
@@ -6,10 +6,10 @@ from pathlib import Path
 
 from . import counts, coverage, figures, identity, record, results, suite
 
-# Pages for developers judge nothing and are judged by nothing.
+# Developer pages are excluded, because no result depends on them.
 INPUTS = (".", ":!docs/developer", ":!docs/decisions", f":!{identity.EVIDENCE}", ":!README.md", ":!CHANGELOG.md")
 TOOLS = ("g++", "cmake", "ctest", "verilator", "yosys", "python3")
-TIMEOUT_STATUS = 124  # of timeout(1)
+TIMEOUT_STATUS = 124  # exit status of timeout(1)
 
 
 def arguments_of(argv):
@@ -32,7 +32,8 @@ def arguments_of(argv):
 
 
 def begin() -> int:
-    """Prints time, commit and state of the work tree; a commit during the run changes nothing of these."""
+    """Prints time, commit and state of the work tree before the run, so that a commit during the run does not change
+    them."""
     print(identity.now(), identity.commit(), str(identity.is_clean()).lower())
     return 0
 

@@ -1,4 +1,4 @@
-"""The fields of a record, its file, and what is refused in it."""
+"""The fields of a record, its file, and the checks of its values."""
 
 import json
 import os
@@ -12,7 +12,7 @@ from . import coverage, figures
 KINDS = ("lockstep", "mutation", "proof", "placement", "fuzz", "program", "sanitizer", "soak", "coverage", "part", "build")
 RESULTS = ("passed", "failed", "timeout", "cancelled")
 JOB = re.compile(r"[a-z0-9][A-Za-z0-9_.-]*")
-# One form alone, so that the order of the texts is that of the times.
+# A fixed format, so that sorting the texts sorts the times.
 BEGUN = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z")
 
 
@@ -74,7 +74,7 @@ OPTIONAL = {
 
 
 def check(record: object, where: str) -> dict:
-    """The record, when it has all fields and no unknown ones, each as it must be."""
+    """Returns the record if it has exactly the known fields, each with a valid value; otherwise raises RecordError."""
     if not isinstance(record, dict):
         raise RecordError(f"{where}: is no object")
     for name, (right, text) in {**FIELDS, **OPTIONAL}.items():
@@ -93,7 +93,7 @@ def check(record: object, where: str) -> dict:
 
 
 def is_complete(record: dict) -> bool:
-    """Whether the run came to a verdict; one that somebody cancelled did not."""
+    """Whether the run reached a verdict; a cancelled run did not."""
     return record["result"] != "cancelled"
 
 
@@ -106,7 +106,7 @@ def read(path: Path) -> dict:
 
 
 def write_text(path: Path, text: str):
-    """Writes beside the file and renames: nobody ever reads a half."""
+    """Writes a temporary file and renames it, so that readers never see a partial file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     try:

@@ -1,4 +1,4 @@
-"""Folders of records, and how those of several are merged."""
+"""Folders of records, and the merging of several."""
 
 import json
 from pathlib import Path
@@ -10,13 +10,14 @@ Records = Dict[str, dict]  # by job
 
 
 def rank(entry: dict):
-    """Orders all records of one job: a verdict before none, then the newer; with equal times the content decides, so that
-    the order of merging never does."""
+    """Sort key for the records of one job: records with a verdict outrank those without, then newer ones outrank older
+    ones. With equal times the content decides, so that the order of merging does not matter."""
     return record.is_complete(entry), entry["begun"], json.dumps(entry, sort_keys=True)
 
 
 def merge(parts: Iterable[Records]) -> Records:
-    """Of each job the record of the highest rank. Associative and commutative; what is doubled or missing does no harm."""
+    """The record of the highest rank for each job. The operation is associative and commutative; duplicates and missing
+    records do no harm."""
     merged: Records = {}
     for part in parts:
         for job, entry in part.items():

@@ -1,4 +1,4 @@
-"""What ctest's results in JUnit's form say."""
+"""Verdicts from ctest's results in JUnit format."""
 
 import re
 import tomllib
@@ -28,7 +28,7 @@ def counts_of(junit: Path) -> Dict[str, int]:
 
 
 def foreign(junit: Path, judges: Path = JUDGES) -> Dict[str, str]:
-    """The verdicts of the tests in which a program from elsewhere judges; none without the list of these."""
+    """The verdicts of the tests in which a third-party program judges; empty without the list of such programs."""
     if not judges.exists():
         return {}
     patterns = [judge["tests"] for judge in tomllib.loads(judges.read_text()).get("judge", []) if "tests" in judge]

@@ -1,4 +1,4 @@
-"""The stream commands as plain data, read from TOML and checked against what the card's checker can judge."""
+"""The stream commands as plain data, read from TOML, and checked for rules that the card's checker cannot express."""
 
 import tomllib
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ COUNT_BITS = 40
 MAX_AXES = 8
 PLANE_AXES = 2
 MASK_RULES = ["none", "any", "plane", "plane_and_axes", "flags"]
-# The one limit inside a halfword range that the checker compares with: one pulse a tick.
+# The only limit, apart from the width of a field's halfwords, that the checker can compare with: one pulse per tick.
 UNIT_LIMIT = 1 << 40
 UNIT_LIMIT_HALFWORDS = 3
 
 
 class CommandError(DescriptionError):
-    """A layout that the outputs cannot express."""
+    """A layout that the generated files cannot express."""
 
 
 @dataclass
@@ -40,9 +40,9 @@ class Field:
     offset: int  # in halfwords from the payload's start (for a field per axis: of the first axis)
     halfwords: int
     minimum: int
-    limit: Optional[int]  # largest magnitude where the bits allow more
-    bit_mask: Optional[int]  # bits that may be set, where they are not contiguous
-    optional_bits: int  # further bits that may be set with `optional_engine`
+    limit: Optional[int]  # largest magnitude, if the bits allow more
+    bit_mask: Optional[int]  # bits that may be set, if they are not contiguous
+    optional_bits: int  # more bits that may be set when `optional_engine` is built in
     optional_engine: str
     at_most_count: bool
     unit: str
@@ -52,9 +52,9 @@ class Field:
 
 @dataclass
 class Flags:
-    maximum: int  # of the mask byte without the bits `free`
-    engine: str  # needed for any value but 0
-    free: int  # bits that every card takes
+    maximum: int  # largest value of the mask byte without the bits `free`
+    engine: str  # engine that values other than 0 need
+    free: int  # bits that every card accepts
     brief: str
 
 
@@ -65,16 +65,16 @@ class Command:
     queues: List[str]
     mask: str  # one of MASK_RULES
     engine: str  # engine (units.toml) without which the opcode is unknown; empty: always there
-    built: bool  # false: only laid out, and unknown whatever the engines are
-    flags: Optional[Flags]  # with the mask rule `flags`
+    built: bool  # false: only specified; every card rejects the opcode as unknown
+    flags: Optional[Flags]  # only with the mask rule `flags`
     brief: str
-    notes: str  # Markdown behind the fields
+    notes: str  # Markdown text after the fields
     count: Count
     fields: List[Field]
 
     @property
     def fixed_halfwords(self):
-        """Payload before the part that is repeated for every axis."""
+        """Length of the payload before the part that is repeated for every axis."""
         return sum(f.halfwords for f in self.fields if not f.per_axis)
 
     @property
@@ -83,7 +83,7 @@ class Command:
 
     @property
     def axes_in_base(self):
-        """Axes of the mask whose fields stand in the fixed part, so that nothing is repeated for them."""
+        """Number of axes whose fields are in the fixed part of the payload instead of the repeated part."""
         return PLANE_AXES if self.mask == "plane_and_axes" else 0
 
     @property
@@ -93,7 +93,7 @@ class Command:
 
 @dataclass
 class Constant:
-    """A number that follows from how the card is built, needed by hosts, models and RTL alike."""
+    """A number that the design of the card determines, for hosts, models and RTL."""
 
     name: str
     value: int

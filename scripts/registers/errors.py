@@ -1,5 +1,5 @@
-"""The fault that readers of the descriptions report."""
+"""The error that readers of the descriptions raise."""
 
 
 class DescriptionError(Exception):
-    """A fault in the files of rtl/regs; scripts/generate-registers prints its text and writes nothing."""
+    """An error in the files of rtl/regs; scripts/generate-registers prints its text and writes nothing."""

@@ -1,4 +1,4 @@
-"""Positions that drivers rely on, as text: rtl/regs/frozen.txt holds them for the present versions."""
+"""Positions that drivers rely on, as text: rtl/regs/frozen.txt has them for the present versions."""
 
 import re
 
@@ -44,7 +44,7 @@ def _field(field):
 
 
 def moved(frozen, text):
-    """What a committed text and the description disagree on though the version is the same: a list of lines."""
+    """Lines that differ between the committed text and the description for the same version."""
     differences = []
     old, new = _sections(frozen), _sections(text)
     for version, lines in new.items():
@@ -61,8 +61,8 @@ def moved(frozen, text):
 
 
 def _only_new_engines(version, old, new):
-    """Whether commands were added and nothing else moved, each of an engine that had no command: a driver that does not
-    know them finds no unit that asks for them."""
+    """Whether the only difference is added commands, each of an engine that had no command before. An old driver does
+    not know these commands, and none of the units that it drives needs them."""
     added = [line for line in new if line not in old]
     known = set(ENGINE.findall("\n".join(old)))
     return (version.startswith("commands ") and bool(added) and new[:len(old)] == old

@@ -13,7 +13,7 @@ WORD = 0xFFFFFFFF
 
 
 class MapError(DescriptionError):
-    """The description says something that the outputs cannot express."""
+    """The description has something that the generated files cannot express."""
 
 
 @dataclass
@@ -26,7 +26,7 @@ class Field:
     brief: str
     minimum: Optional[int]
     maximum: Optional[int]
-    engine: str  # engine (units.toml) that the bits need to have a meaning; empty: always
+    engine: str  # engine (units.toml) that gives the bits their meaning; empty: every card
 
     @property
     def mask(self):
@@ -36,15 +36,15 @@ class Field:
 @dataclass
 class Register:
     name: str
-    address: int  # of axis 0's slot in an array
+    address: int  # byte address; in an array, of axis 0's slot
     access: str  # constant, live, snapshot, clear_ones, setting or command
     brief: str
-    source: str  # what gives a constant its value; empty: the map itself
+    source: str  # source of a constant's value; empty: the map itself
     count: int
-    stride: int  # in bytes from one axis to the next; negative where an array runs downwards
+    stride: int  # bytes from one axis to the next; negative for an array with descending addresses
     only_present_axes: bool
-    engine: str  # engine without which the register is not there; empty: always there
-    area: str  # of latched values that it belongs to, else empty
+    engine: str  # engine that the register needs; empty: every card has it
+    area: str  # area of latched values that the register belongs to, or empty
     fields: List[Field] = field(default_factory=list)
 
     @property
@@ -57,7 +57,7 @@ class Register:
 
     @property
     def optional(self):
-        """Bits that need an engine besides the register's own, and that engine."""
+        """Bits that need another engine than the register itself, and that engine."""
         fields = [f for f in self.fields if f.engine]
         if len({f.engine for f in fields}) > 1:
             raise MapError(f"{self.name}: fields need more than one engine")
@@ -73,7 +73,7 @@ class Register:
 
     @property
     def limited(self):
-        """The field with limits of its own, or None."""
+        """The field with a minimum or maximum, or None."""
         limited = [f for f in self.fields if f.minimum is not None or f.maximum is not None]
         if len(limited) > 1:
             raise MapError(f"{self.name}: limits on more than one field")
@@ -97,7 +97,7 @@ class RegisterMap:
         return next(r for r in self.registers if r.name == "MAP_VERSION").reset
 
     def areas(self):
-        """Areas of latched values: name -> registers. The first one's layout is that of all but REST."""
+        """Areas of latched values: name -> registers. All areas except REST have the layout of the first one."""
         areas = {}
         for r in self.registers:
             if r.area:
@@ -106,7 +106,7 @@ class RegisterMap:
 
 
 def read_register_map(path, engines):
-    """`engines`: the names that registers and fields may ask for."""
+    """`engines`: names that registers and fields may refer to."""
     compiler = RDLCompiler()
     compiler.compile_file(str(path))
     top = compiler.elaborate().top

@@ -10,7 +10,7 @@ from .errors import DescriptionError
 TAG_MAX, VERSION_MAX, INSTANCES_MAX, FEATURES = 0xFF, 0xF, 0xFF, 8
 BASE_MAX, WORDS_MAX, STRIDE_MAX, LOAD_UNIT_NONE = 0x3FF, 0xFF, 0x7F, 31
 DESCRIPTOR_WORDS = 2
-# Numbers of instances that the card's parameters decide.
+# Numbers of instances that are parameters of the card.
 COUNTS = ["Axes", "SnapshotAreas", "Ports", "Inputs", "Outputs", "Captures"]
 
 
@@ -21,7 +21,7 @@ class UnitError(DescriptionError):
 @dataclass
 class Engine:
     name: str
-    low: int  # bit of the mask of engines
+    low: int  # bit in the mask of engines
     brief: str
 
 
@@ -39,9 +39,9 @@ class Unit:
     major: int
     minor: int
     brief: str
-    engine: str  # without which it is not built in; empty: always built in
+    engine: str  # engine that the unit needs; empty: every card has the unit
     instances: Union[int, str]  # a number, or one of COUNTS
-    first: str  # registers that bound what one instance uses; empty: none
+    first: str  # first and last register of an instance; empty: none
     last: str
     stride: int  # words
     load_unit: int
@@ -56,7 +56,7 @@ class UnitMap:
     engines: List[Engine]
 
     def engine_bit(self, name):
-        """Bit of an engine; 0 (lines, which every card has) where nothing is needed."""
+        """Bit of an engine; 0 (lines, which every card has) for an empty name."""
         return next(e.low for e in self.engines if e.name == name) if name else 0
 
 
@@ -110,7 +110,7 @@ def _check(unit_map):
 
 
 def span(unit, registers):
-    """Registers that bound an instance's words: (first, last) as Register objects, or None."""
+    """First and last register of an instance as Register objects, or None."""
     if not unit.first:
         return None
     by_name = {r.name: r for r in registers}
@@ -121,5 +121,6 @@ def span(unit, registers):
 
 
 def last_axis_bound(unit, register) -> Optional[int]:
-    """Bytes that this bound moves with each further axis where it is a slot of the card's last axis, else 0."""
+    """Bytes by which this register moves with each further axis, if it is the slot of the card's last axis; otherwise
+    0."""
     return 0 if unit.instances == "Axes" or not register.is_array else register.stride

@@ -7,7 +7,8 @@ from .errors import DescriptionError
 
 
 class WindowError(DescriptionError):
-    """Ranges that leave a gap or overlap, or a register in a reserved one, across two, or where the card keeps none."""
+    """Ranges with a gap or an overlap, or a register that is in a reserved range, in two ranges, or in a word that the
+    card does not store."""
 
 
 @dataclass
@@ -16,7 +17,7 @@ class Range:
     words: int
     content: str
     reserved: bool
-    kept: int  # of each `repeat` words the first that the hardware keeps apart; the others share a place with these
+    kept: int  # words at the start of each `repeat` words that the hardware stores; the others alias these
     repeat: int
 
     @property
@@ -55,7 +56,7 @@ def _check_register(register, ranges):
         raise WindowError(f"{register.name}: in the range at 0x{place.first:03X}, which is reserved until "
                           f"rtl/regs/window.toml gives it to a unit: {place.content}")
     word = max((address - place.first) // 4 % place.repeat for address in register.addresses)
-    # A command is an order and is not kept.
+    # A write to a command register has an effect, but is not stored.
     if register.access != "command" and word >= place.kept:
         raise WindowError(f"{register.name}: word {word} of its range at 0x{place.first:03X}, where the hardware keeps "
                           f"{place.kept} apart (rtl/registers/register_fold_pkg.sv, register_live.sv): it would share a "

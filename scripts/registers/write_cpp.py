@@ -369,7 +369,7 @@ def _addresses(registers):
 
 
 def _field_constants(registers):
-    """Masks and shifts where a register has more than one field; a lone field starts at bit 0."""
+    """Masks and shifts of registers with more than one field; a single field starts at bit 0."""
     yield "\n// Masks of fields, and shifts of those wider than a bit.\nnamespace field {\n"
     for r in registers:
         if len(r.fields) < 2 and r.name not in ("BUILD_FLAGS",):

@@ -58,7 +58,7 @@ stored. A command that needs an [engine](registers.md#units-and-engines) which i
 
 
 def _wrapped(text):
-    """The page with its prose at 120 columns; tables, headings and code stay lines."""
+    """The page with its prose wrapped at 120 columns; tables, headings and code keep their lines."""
     return "\n".join(
         line if len(line) <= 120 or line.startswith(("|", "#", "<", "    ")) else
         textwrap.fill(line, 120, subsequent_indent="  " if line.startswith("- ") else "", break_long_words=False,
@@ -269,7 +269,7 @@ def _field(field):
 
 
 def _cell(text):
-    """A bar would end the cell."""
+    """Escapes bars, which would end the cell."""
     return text.replace("|", "\\|")
 
 

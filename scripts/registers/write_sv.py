@@ -138,13 +138,13 @@ def _function(comment, name, width, arguments, key, items, default):
 
 
 def _assignment(name, value):
-    """`name = value;`, a long value after its condition in a line of its own."""
+    """`name = value;`, with a line break after the condition of a long value."""
     line = f"        {name} = {value};\n"
     return line if len(line) <= LINE + 1 else line.replace(" ? ", " ?\n            ", 1)
 
 
 def _labels(labels):
-    """Case labels of one item, in lines of at most LINE columns."""
+    """Case labels of one item, wrapped at LINE columns."""
     lines = [[]]
     for label in labels:
         if len(", ".join(lines[-1] + [label])) > LINE - len("      ,"):
@@ -207,14 +207,15 @@ def _register_functions(registers, version):
 
 
 def _optional(width, always, bits, engine):
-    """An expression for `always`, with `bits` besides where the engine is built in."""
+    """An expression for `always`, plus `bits` if the engine is built in."""
     if not bits:
         return _hex(width, always)
     return f"{_hex(width, always)} | ({_built(engine, _hex(width, bits), _hex(width, 0))})"
 
 
 def _built(engine, value, default):
-    """What is not built in has the default's value, so that synthesis drops its part of the table."""
+    """An expression for `value` if the engine is built in, otherwise `default`, so that synthesis drops that part of
+    the table."""
     return value if not engine or value == default else f"engines[ENGINE_{engine.upper()}] ? {value} : {default}"
 
 
@@ -252,7 +253,8 @@ def _slot_function(registers, patterns):
 
 
 def _descriptor_function(registers, units):
-    """The table of descriptors as one constant: the last unit is pushed first, and a unit that is not built in adds none."""
+    """The table of descriptors as one constant. The last unit is pushed first; a unit that is not built in adds
+    nothing."""
     bits = 32 * um.DESCRIPTOR_WORDS * units.slots
     arguments = ["input logic [31:0] engines"] + [f"input int {_snake(name)}" for name in um.COUNTS]
     head = "  function automatic logic "
@@ -291,7 +293,7 @@ def _descriptor_words(unit, registers):
 
 
 def _word_of_last_axis(unit, register):
-    """Word address of a bound: of axis 0's slot, or of the last axis's where the unit spans all of them."""
+    """Word address of a first or last register: of axis 0's slot, or of the last axis's if the unit spans all axes."""
     step = um.last_axis_bound(unit, register) // 4
     if not step:
         return f"{register.address // 4}"

@@ -1,1 +1,1 @@
-"""What the scripts share about the RTL."""
+"""Code about the RTL that the scripts share."""

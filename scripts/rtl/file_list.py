@@ -6,7 +6,7 @@ RTL = ROOT / "rtl"
 LIST = RTL / "trammel.f"
 CORE = RTL / "trammel.core"
 
-# Where the FuseSoC core file repeats the list: FuseSoC reads no other file.
+# The FuseSoC core file repeats the list here, because FuseSoC reads no other file.
 CORE_BEGIN = "      # from trammel.f\n"
 CORE_END = "      # end of trammel.f\n"
 
@@ -23,7 +23,8 @@ def sources():
 
 
 def present():
-    """Every SystemVerilog file below rtl/ but those about lint: packages first, for readers that want them so."""
+    """Every SystemVerilog file below rtl/, without those for lint; packages come first, because some readers need them
+    first."""
     paths = [f.relative_to(RTL) for f in RTL.rglob("*.sv") if f.relative_to(RTL).parts[0] != "lint"]
     return [str(p) for p in sorted(paths, key=lambda p: (not p.stem.endswith("_pkg"), p))]
 

@@ -1,19 +1,20 @@
 """Logic cells of every module of a block on an iCE40.
 
-The block is synthesised with its hierarchy kept and flattened only then, so that every cell's name tells its module;
-the cells are counted as nextpnr packs them. That costs a little more than what the flat synthesis finds across modules.
+The block is synthesised with its hierarchy and flattened afterwards, so that the name of every cell tells its module;
+the cells are counted as nextpnr packs them. The sum is a little larger than the flat synthesis, which optimises across
+modules.
 """
 import json
 from collections import Counter
 
 from synthesis.tools import BUILD, ice40, read_block, run
 
-# Cells that nextpnr adds at the ends of carry chains belong to no module.
+# Row for the cells that nextpnr adds at the ends of carry chains, which belong to no module.
 ADDED = "(ends of carry chains)"
 
 
 def module_name(kind):
-    """The name of a module, without what Yosys writes around it for its parameters."""
+    """The name of a module, without the decoration that Yosys adds for its parameters."""
     return kind.split("\\")[1] if kind.startswith("$paramod") else kind
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Takes the bare flip-flops after an ECP5's block RAMs into the RAMs as their output registers.
+"""Replaces plain flip-flops after an ECP5's block RAMs by the output registers of the RAMs.
 
-Yosys leaves these registers of a DP16KD unused. A flip-flop that has nothing before it but the RAM's slow output is
-placed wherever its readers are; across the device that wire alone takes a third of a clock.
+Yosys leaves these registers of a DP16KD unused. A flip-flop with only the RAM's slow output before it is placed near
+its readers; across the device, the wire to it takes a third of a clock.
 """
 import json
 import sys
@@ -11,7 +11,8 @@ from pathlib import Path
 
 
 def is_bare(cell, clock):
-    """A flip-flop on this clock that is always enabled, never set or reset, and 0 at the start as a RAM's output is."""
+    """Whether the cell is a flip-flop on this clock that is always enabled, is never set or reset, and starts at 0, as
+    a RAM's output does."""
     if cell is None or cell["type"] != "TRELLIS_FF":
         return False
     parameters = {name: value.strip() for name, value in cell["parameters"].items()}
@@ -20,7 +21,7 @@ def is_bare(cell, clock):
 
 
 def registers_of(ram, cells, readers):
-    """The flip-flop of each output of a RAM that is read; {} unless all of them have one and nobody else reads them."""
+    """The flip-flop of each used output of a RAM; {} unless each output has one as its only reader."""
     ways = ram["port_directions"]
     outputs = {port: bits[0] for port, bits in ram["connections"].items() if ways[port] == "output" and readers[bits[0]]}
     clock = ram["connections"]["CLKB"]
@@ -33,11 +34,11 @@ def registers_of(ram, cells, readers):
 
 
 def take_output_registers(netlist, top):
-    """Rewrites the netlist, a JSON file of Yosys; returns how many flip-flops it took."""
+    """Rewrites the netlist, a JSON file of Yosys; returns the number of flip-flops replaced."""
     design = json.loads(Path(netlist).read_text())
     module = design["modules"][top]
     cells = module["cells"]
-    readers = defaultdict(list)  # by bit: names of cells; of ports too, which are no flip-flops
+    readers = defaultdict(list)  # by bit: names of the cells that read it, and of ports
     for name, cell in cells.items():
         for port, bits in cell["connections"].items():
             if cell["port_directions"][port] == "input":
@@ -51,7 +52,7 @@ def take_output_registers(netlist, top):
         registers = registers_of(ram, cells, readers)
         for port, register in registers.items():
             ram["connections"][port] = cells.pop(register)["connections"]["Q"]
-            side = port[2]  # DOA0 ..., DOB0 ...; a word of 36 bits leaves by both
+            side = port[2]  # DOA0 ..., DOB0 ...; a word of 36 bits uses both
             ram["parameters"][f"REGMODE_{side}"] = "OUTREG"
             ram["connections"][f"OCE{side}"] = ["1"]
         taken += len(registers)

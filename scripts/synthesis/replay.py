@@ -2,7 +2,7 @@
 values, and compares every output."""
 import re
 
-# What an output needs to mean something: until the first answer it is not known.
+# Outputs that are valid only with another one: before the first answer they are unknown.
 MEANS_WITH = {"rdata_o": "rvalid_o"}
 
 
@@ -14,9 +14,9 @@ def recorded_ports(recording):
 
 
 def bench(ports, top, four_state=False):
-    """The bench; it takes the recording as +recording=FILE. A netlist's flip-flops begin with 0 and are compared from the first
-    clock; with four_state registers begin unknown, and outputs are compared from the second clock under reset on: the card
-    registers its reset once."""
+    """The bench, which reads the recording from +recording=FILE. A netlist's flip-flops start at 0, and its outputs are
+    compared from the first clock. With four_state, registers start unknown, and outputs are compared from the second
+    clock under reset on, because the card registers its reset once."""
     inputs = [p for p in ports if p[1] == "input"]
     outputs = [p for p in ports if p[1] == "output"]
     lines = ["module replay;", "  integer file, got, clocks, wrong;", "  reg [8*4096-1:0] name;", "  reg clk_i;",
@@ -37,7 +37,7 @@ def bench(ports, top, four_state=False):
               "      if (rst_i === 1) under_reset = under_reset + 1;", "      if (under_reset >= 2) judged = 1;"]
     lines += [f"      if (judged && {MEANS_WITH.get(n, 1)} && {n} !== {n}_then) begin wrong = wrong + 1; "
               f'$display("clock %0d: {n} is %h, recorded %h", clocks, {n}, {n}_then); end' for n, _, _ in outputs]
-    if four_state:  # a bench that never judges proves nothing
+    if four_state:  # a bench without any comparison would prove nothing
         lines += ['      if (clocks == 8 && !judged) begin wrong = wrong + 1; $display("no reset at the beginning"); end']
     lines += ["      clk_i = 0;", "    end", '    $display("%0d clocks replayed, %0d differences", clocks, wrong);',
               "    $finish;", "  end", "endmodule", ""]

@@ -1,4 +1,4 @@
-"""The tools of synthesis, place and route, and what they read of the RTL."""
+"""The tools of synthesis, place and route, and the RTL files that they read."""
 import json
 import re
 import subprocess
@@ -11,7 +11,7 @@ BUILD = ROOT / "build" / "synthesis"
 
 
 def run(command, log, seconds=None):
-    """Runs a tool with its output in a file, for so many seconds at most; the file is named in the error."""
+    """Runs a tool for at most `seconds`, with its output in a file, which errors name."""
     with open(log, "w") as out:
         try:
             code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=ROOT, timeout=seconds).returncode
@@ -43,7 +43,7 @@ def venv_tool(name):
 
 
 def version(command):
-    """Name, version and revision of a tool: what else it says of itself depends on where it was built."""
+    """Name, version and revision of a tool. The rest of its version text depends on where it was built."""
     done = subprocess.run([command, "--version" if "nextpnr" in command else "-V"], capture_output=True, text=True)
     said = done.stdout + done.stderr
     yosys = re.search(r"(Yosys \S+).*?\bgit sha1 ([0-9a-f]+)", said)
@@ -56,7 +56,8 @@ def version(command):
 
 
 def sources(block):
-    """The files of a block and of what it is made of; others would change the tools' names and with them the result."""
+    """The files of a block and of its parts. More files would change the names that the tools choose, and so the
+    result."""
     packages = [p for p in listed() if p.endswith("_pkg.sv")]
     path = {Path(p).stem: p for p in listed() if p not in packages}
     if block not in path:

@@ -1,11 +1,11 @@
 """The wrapper that registers every input and output of a block.
 
-Fmax is then the block's own and no pin limits it: inputs come from a shift register, outputs are folded bit by bit into
-one pin. Ports for observation stay open, as on a board.
+Fmax is then the block's own, because no pin limits it: inputs come from a shift register, and outputs are folded bit by
+bit into one pin. Ports for observation stay open, as on a board.
 """
 from synthesis.tools import BUILD, ports
 
-# Ports that exist for lockstep.
+# Ports that exist only for the lockstep.
 OBSERVATION = {
     "trammel_card": {"observe_o"},
 }

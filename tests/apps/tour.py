@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
 """usage: tour.py PAGE TRAMMEL EXAMPLES
 
-Runs the commands of a page as its reader would, in order, in a folder with the examples, and holds what they print against
-what the page quotes. The commands are the lines that begin with `$ ` in the page's blocks ```console; all of them share one
-shell. A command that ends with `&` runs beside the next ones; `wait` waits for it. Behind a command stands what it prints:
+Runs the commands of a page in order, as a reader would, in a folder with the examples, and compares their output with
+the output that the page quotes. The commands are the lines that begin with `$ ` in the page's blocks ```console; all of
+them share one shell. A command that ends with `&` runs in parallel with the next ones; `wait` waits for it. The quoted
+output follows the command:
 
-- Each quoted line must be printed, in this order. A line `...` stands for any lines, also none. Other lines are not printed.
-- Whole numbers are equal. A number with a decimal point may differ by 0.5: where a machine stops depends on when the host
-  was heard, and a card that is served in real time is heard later.
-- A number of ticks (`5400 ticks`) is any number: it is where in a path a button was pressed.
-- A word of 16 hexadecimal digits is a name for itself: the same in the page is the same in the output, another is another.
+- Each quoted line must be printed, in this order. A line `...` matches any number of lines, also none. Other lines are
+not printed. - Whole numbers are equal. A number with a decimal point may differ by 0.5, because the place of a stop
+depends on the time at which the card hears the host.
+- A number of ticks (`5400 ticks`) is any number, because it depends on when a button was pressed.
+- A word of 16 hexadecimal digits is an identity: equal words in the page must be equal in the output, different ones
+different.
 
-So that it takes seconds, the card is served with `--engine model --fast`, on a port that is free."""
+The card is served with `--engine model --fast`, so that the tour takes seconds, and on a free port."""
 import re
 import socket
 import subprocess
@@ -40,7 +42,7 @@ def blocks(page: str) -> list[tuple[str, list[str]]]:
 
 
 class Names:
-    """Which identity of the output the page means by its own."""
+    """Maps the page's identities to those of the output."""
 
     def __init__(self) -> None:
         self.meant: dict[str, str] = {}
@@ -67,7 +69,7 @@ def is_line(quoted: str, printed: str, names: Names) -> bool:
 
 
 def difference(quoted: list[str], printed: list[str], names: Names) -> str | None:
-    """The first line of the page that was not printed, or of the output that the page does not have."""
+    """The first line of the page that was not printed, or the first printed line that the page lacks."""
     rest = list(printed)
     skipping = False
     for line in quoted:
@@ -86,7 +88,7 @@ def difference(quoted: list[str], printed: list[str], names: Names) -> str | Non
 
 
 class Shell:
-    """One shell for all commands. What a command prints beside others goes to its own file, shown by `wait`."""
+    """One shell for all commands. The output of a background command goes to its own file, which `wait` shows."""
 
     def __init__(self, folder: Path, trammel: Path) -> None:
         environment = {"PATH": f"{trammel.parent}:/usr/bin:/bin", "HOME": str(folder), "LC_ALL": "C"}
@@ -122,7 +124,7 @@ class Tour:
         self.names = Names()
 
     def serve(self, command: str) -> list[str]:
-        """Starts the server, as in a terminal of its own; what it prints when it is there."""
+        """Starts the server, as in a separate terminal; returns what it prints when it is ready."""
         (self.folder / "served").touch()
         self.shell.run(f"{command} --engine model --fast >served 2>notes & SERVER=$!")
         end = time.monotonic() + LONGEST
@@ -137,7 +139,7 @@ class Tour:
             return self.serve(command)
         if command.endswith("&"):
             self.shell.run(f"timeout {LONGEST} {command[:-1]} >beside 2>&1 & BESIDE=$!")
-            time.sleep(0.3)  # it has reached the server
+            time.sleep(0.3)  # time for the command to reach the server
             return []
         if command == "wait":
             return self.shell.run("wait $BESIDE; cat beside")

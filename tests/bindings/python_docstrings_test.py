@@ -1,4 +1,4 @@
-"""Every class, method, property and function of the Python package says what it is for."""
+"""Every class, method, property and function of the Python package has a docstring."""
 import enum
 import inspect
 import unittest
@@ -14,7 +14,7 @@ def is_public(name):
 
 def text_of(thing):
     """The docstring without the signature that nanobind puts before it."""
-    if isinstance(thing, enum.Enum):  # without one of its own it has its class's
+    if isinstance(thing, enum.Enum):  # without a docstring of its own it inherits that of its class
         return vars(thing).get("__doc__") or ""
     signature = f"{getattr(thing, '__name__', '')}("
     lines = (thing.__doc__ or "").splitlines()

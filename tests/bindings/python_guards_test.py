@@ -131,7 +131,7 @@ class SoftLimits(unittest.TestCase):
 
 
 class Drives(unittest.TestCase):
-    # Rounded up to 4,096 clocks and to 2^20 of 1 us.
+    # The card rounds up to multiples of 4,096 clocks, and idle_ns to 2^20 clocks of 1 us.
     TIMES = {"brake_release_ns": 4_096_000, "before_first_step_ns": 8_192_000, "after_last_step_ns": 12_288_000,
              "brake_set_ns": 16_384_000, "idle_ns": 1}
 
@@ -154,7 +154,7 @@ class Drives(unittest.TestCase):
         card.wait(4096)
         self.assertEqual(self.state(card), (True, False, 3))
         card.wait_until_idle(SECOND)
-        card.wait(1 << 20)  # and 12,288 clocks, in the midst of which this is
+        card.wait(1 << 20)  # the 12,288 clocks of after_last_step_ns have begun
         self.assertEqual(self.state(card), (True, False, 3))
         card.wait(12_288)
         self.assertEqual(self.state(card), (True, False, 1))
@@ -199,7 +199,7 @@ class Drives(unittest.TestCase):
 
 class EmergencyStop(unittest.TestCase):
     def pressed_at_100(self, ramp):
-        """Of a line of 600 pulses: where it comes to rest."""
+        """The position at which a line of 600 pulses comes to rest after a press at pulse 100."""
         card = trammel.simulate()
         self.assertTrue(card.has_emergency_stop)
         self.assertFalse(card.read_emergency_stop())

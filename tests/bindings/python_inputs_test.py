@@ -1,4 +1,4 @@
-"""Inputs in the Python package: filters, roles, what they stop, and where a stop has left the card."""
+"""Inputs in the Python package: filters, roles, stops by inputs, and the state of the card after a stop."""
 import unittest
 
 import trammel
@@ -50,7 +50,7 @@ class Inputs(unittest.TestCase):
         self.assertFalse(card.read_status().button_hold)
 
     def on_a_limits_ramp(self, overtravel):
-        """A card that has stepped into a switch: a ramp of 0.1 s, which takes 50 pulses."""
+        """A card that has stepped into a limit switch and stopped on a ramp of 0.1 s, which takes 50 pulses."""
         card = trammel.simulate()
         card.set_slew_time(100_000_000)
         card.set_role(trammel.Role(trammel.AxisRole.LIMIT_PLUS, 0), 1 << self.X_PLUS)

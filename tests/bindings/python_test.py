@@ -1,4 +1,4 @@
-"""The Python package: driver, simulated card, interpolators, and how they fail."""
+"""The Python package: driver, simulated card, interpolators, and their errors."""
 import math
 import os
 import signal
@@ -70,7 +70,7 @@ class Cards(unittest.TestCase):
 
 
 class Places(unittest.TestCase):
-    """The machine's place, which a card keeps from one program to the next."""
+    """The machine's position, which a card keeps from one program to the next."""
 
     def cut_off(self, card):
         card.start_line([1000], duration_ns=SECOND)
@@ -139,14 +139,15 @@ class Holds(unittest.TestCase):
 
 
 class Interrupts(unittest.TestCase):
-    """A real SIGINT while a call waits: KeyboardInterrupt, and a card at rest and empty."""
+    """A real SIGINT while a call waits must raise KeyboardInterrupt and leave the card at rest with empty queues."""
 
     HOURS = 10**6 * SECOND
-    HEARD = 0.2  # seconds: the best of some, since the machine may have other work
+    HEARD = 0.2  # seconds, for the best of TRIES runs, because the machine may be busy
     TRIES = 3
 
     def interrupted(self, call, calls):
-        """Seconds from the signal to the exception. The signal comes when `calls`, which counts what is done, stands."""
+        """Seconds from the signal to the exception. The signal is sent when `calls`, a count of progress, no longer
+        changes."""
         sent = []
 
         def send():

@@ -1,4 +1,4 @@
-"""The machine behind a served card, from Python beside the program that moves the card.
+"""The machine behind a served card, used from Python in parallel with the program that moves the card.
 
 Usage: python_world_test.py TRAMMEL, where TRAMMEL is the command."""
 import re
@@ -62,7 +62,7 @@ class AtTheMachine(unittest.TestCase):
             trammel.open_world(self.url).press("estop")
         with self.assertRaisesRegex(trammel.Error, "serve"):
             trammel.open_world("sim:")
-        # Nobody moves the card: the condition never comes.
+        # Nothing moves the card, so the condition never becomes true.
         with self.assertRaises(trammel.LinkError):
             self.world.press("estop", when="X > 40", longest_ns=100_000_000)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Descriptions of boards: the roles that they suggest, and variants with another device. Each wrong one is refused by name."""
+"""Descriptions of boards: suggested roles, and variants with another device. Each error must be named."""
 import sys
 import tempfile
 import unittest
@@ -14,7 +14,7 @@ ULX3S = (PROJECT / "boards" / "ulx3s" / "board.toml").read_text()
 
 
 def with_description(text, what):
-    """What comes of the description, or what the program ends with."""
+    """The board that the description gives, or the message with which the program exits."""
     (PROJECT / "build").mkdir(exist_ok=True)  # messages name files from the project's folder
     with tempfile.TemporaryDirectory(dir=PROJECT / "build") as folder:
         board = Path(folder) / "tried"

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 from unittest import mock
 
 PROJECT = Path(__file__).resolve().parents[2]
-# seeded_bugs.py tries the tests on a copy with an error.
+# seeded_bugs.py runs the tests on a copy of the scripts with an error.
 sys.path.insert(0, os.environ.get("COVERAGE_TEST_SCRIPTS", str(PROJECT / "scripts")))
 sys.dont_write_bytecode = True
 
@@ -87,7 +87,7 @@ class InAProject(unittest.TestCase):
         (self.root / "verif/coverage/waivers.toml").write_text(f"[[waiver]]\n{lines}")
 
     def coverage(self, text, **options):
-        """Exit status; what is printed is in self.said."""
+        """The exit status; self.said has the output."""
         self.dat.parent.mkdir(parents=True, exist_ok=True)
         self.dat.write_text(text.replace("/project/", f"{self.root}/"))
         arguments = SimpleNamespace(**{"toggle": False, "only": "", "cards": False, "no_build": True, "no_run": True, "build_only": False, "jobs": 1,
@@ -102,7 +102,7 @@ class InAProject(unittest.TestCase):
         return json.loads((self.root / "out/rtl/coverage.json").read_text())
 
     def many(self, missing):
-        """MISSING and so many covered lines that one waiver is no more than 2 %."""
+        """MISSING, plus enough covered lines that one waiver is at most 2 %."""
         return missing + "".join(entry(5, column, "branch", "case", 1) for column in range(10, 110))
 
 
@@ -152,7 +152,7 @@ class Verdict(InAProject):
     def test_whole_cards_are_left_out_by_name_and_taken_on_demand(self):
         judges = {"locksteps": [{"name": name, "sources": ["io/counter.sv"]} for name in ("counter", "card", "hx8k_uart", "uart_port")]}
         (self.root / "build/verif/judges.json").write_text(json.dumps(judges))
-        self.assertEqual(self.coverage(WHOLE), 1)  # uart_port has left no counts
+        self.assertEqual(self.coverage(WHOLE), 1)  # there are no counts of uart_port
         self.assertIn("error: lockstep uart_port failed", self.said)
         for name in ("uart_port", "card", "hx8k_uart"):
             (self.dat.parent / f"lockstep_{name}.1.dat").write_text(WHOLE)

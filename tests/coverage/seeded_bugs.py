@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
-# File of scripts/coverage_tools, the text, what it becomes, and the test that finds it.
+# File of scripts/coverage_tools, original text, text with the error, and the test that finds it.
 BUGS = [
     ("points.py", 'module.partition("__")[0])', "module)", "Reading.test_instances_and_parameters_are_one_point"),
     ("points.py", "merged[point] += count", "merged[point] = count", "Reading.test_processes_are_added"),
@@ -44,7 +44,8 @@ BUGS = [
 
 
 def complaint(bug, scripts):
-    """What is wrong with a seeded bug: it changes nothing, or its test passes. Empty when the test finds it."""
+    """The complaint about a seeded bug that changes nothing, or whose test passes; empty when the test finds the
+    bug."""
     file, good, bad, test = bug
     path = scripts / "coverage_tools" / file
     text = path.read_text()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The generator of wiring drawings: a drawing, read back from its SVG as an eye reads it, connects what the text connects; and
-what an eye could not tell apart is refused."""
+"""The generator of wiring drawings. A drawing, read back from its SVG as a person would read it, must connect the same
+pins as the text. Ambiguous drawings must be refused."""
 import re
 import sys
 import unittest
@@ -24,7 +24,7 @@ box b "B"
 < 2 "two"
 < 3 "three"
 """
-# The same with the right pins half a row lower, so that any two can be connected.
+# The same with the right pins half a row lower, so that any two pins can be connected.
 SHIFTED = TWO.replace('box b "B"', 'box b "B" "lower"')
 
 
@@ -45,7 +45,7 @@ def crosses(line, point):
 
 
 def nets_of(svg):
-    """The sets of pins that the drawing connects: wires join where they end together, and at dots; they cross elsewhere."""
+    """The sets of pins that the drawing connects. Wires join at common ends and at dots; elsewhere they only cross."""
     root = xml.fromstring(svg)
     lines = [((float(e.get("x1")), float(e.get("y1"))), (float(e.get("x2")), float(e.get("y2")))) for e in root.iter(f"{SVG}line")]
     circles = [(e, (float(e.get("cx")), float(e.get("cy")))) for e in root.iter(f"{SVG}circle")]
@@ -74,14 +74,14 @@ class ReadBack(unittest.TestCase):
                          [("a.1", "b.1"), ("a.2", "b.2"), ("a.3", "b.3")])
         self.assertEqual(nets_of(wiring.draw(SHIFTED + "wire a.1 b.1\nwire a.2 b.3\nwire a.3 b.2\n")),
                          [("a.1", "b.1"), ("a.2", "b.3"), ("a.3", "b.2")])
-        # One behind the other at each height: lanes in the one order that does it.
+        # Two wires share a height, so only one order of the lanes works.
         self.assertEqual(nets_of(wiring.draw(TWO + "wire a.1 b.2\nwire a.2 b.3\n")), [("a.1", "b.2"), ("a.2", "b.3")])
         self.assertEqual(nets_of(wiring.draw(TWO + "wire a.3 b.2\nwire a.2 b.1\n")), [("a.2", "b.1"), ("a.3", "b.2")])
 
     def test_a_net_of_many(self):
         self.assertEqual(nets_of(wiring.draw(TWO + "wire a.2 b.1 b.2 b.3\n")), [("a.2", "b.1", "b.2", "b.3")])
         self.assertEqual(nets_of(wiring.draw(TWO + "wire b.2 a.1 a.3\n")), [("a.1", "a.3", "b.2")])
-        # On one side alone, and from the right to the left.
+        # One net on the left side only, and one from right to left.
         self.assertEqual(nets_of(wiring.draw(TWO + "wire a.1 a.3\nwire b.3 a.2\n")), [("a.1", "a.3"), ("a.2", "b.3")])
 
     def test_a_part_in_line_parts_the_wire(self):
@@ -95,7 +95,8 @@ class ReadBack(unittest.TestCase):
         self.assertEqual(svg.count('class="dot"'), 2)
 
     def test_many_random_nets(self):
-        """Ways to connect five pins with five, and three of them to more: as described."""
+        """Random nets between five left and five right pins, three of them with more pins, must be drawn as
+        described."""
         import random
         chance = random.Random(1)
         rows = "".join(f'{{0}} {n} "{n}"\n' for n in range(5))
@@ -122,7 +123,7 @@ class ReadBack(unittest.TestCase):
 
 
 class SeededBugs(unittest.TestCase):
-    """The judge above sees each."""
+    """The tests above must find each bug."""
 
     def test_a_dot_that_is_missing(self):
         with mock.patch.object(wiring.Sheet, "dot", lambda *_: None):

@@ -1,6 +1,7 @@
-"""The evidence page: what a run's record must make of it. Seen to fail: with mark() always "good", with a release order by
-text, with a foreign judge that passes without a run, with cells that are not escaped, with missing points that are not red, with
-two ways of cutting the mutants added up, with the older record of a proof, with survivors that are not red, with no missing runs."""
+"""The evidence page: how it must show the records of runs. Seen to fail: with mark() always "good", with a release
+order by text, with a foreign judge that passes without a run, with cells that are not escaped, with missing points that
+are not red, with two ways of cutting the mutants added up, with the older record of a proof, with survivors that are
+not red, with no missing runs."""
 import json
 import pathlib
 import sys
@@ -84,7 +85,7 @@ class Page(unittest.TestCase):
                                  run("coverage-rtl", begun="2025-01-31T23:59:59.999Z", coverage=counted(5))])
         text = page.html(data)
         self.assertIn("<td>8 of 9, 1 waived</td>", text)
-        self.assertIn('<span class="none">not recorded</span>', text)  # of another module, and all toggles
+        self.assertIn('<span class="none">not recorded</span>', text)  # for the other module, and for all toggles
         self.assertIn('<span class="bad">7 of 9</span>', page.html(self.data(v1_0_0=[run("part-coverage", coverage=counted(7))])))
         row = next(line for line in text.splitlines() if ">motion_part<" in line)
         self.assertIn("<td>none</td>", row)

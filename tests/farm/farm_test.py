@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The farm on this machine: what a rerun does, time-outs, failures, Ctrl-C, arithmetic, the quick sample. seeded_bugs.py says
-which error each test finds."""
+"""The farm on this machine: reruns, time-outs, failures, Ctrl-C, arithmetic, the quick sample. seeded_bugs.py lists the
+error that each test finds."""
 import contextlib
 import io
 import json
@@ -21,7 +21,7 @@ Job = job.Job
 
 
 def shell(name, script, **fields):
-    """A job that runs a line of the shell."""
+    """A job that runs a shell command."""
     return Job(name, fields.pop("kind", "program"), ("bash", "-c", script), **{"seconds": 1.0, "limit": 60, **fields})
 
 
@@ -31,7 +31,7 @@ class OnThisMachine(InAFolder):
         self.out, self.list = self.folder / "out", self.folder / "jobs.json"
 
     def farm(self, *jobs, options=()):
-        """Exit status of a run of the jobs; what it says is in self.said."""
+        """The exit status of a run of the jobs; self.said has the output."""
         job.write_list(self.list, jobs)
         said = io.StringIO()
         handler = signal.getsignal(signal.SIGTERM)
@@ -45,13 +45,13 @@ class OnThisMachine(InAFolder):
         return {name: entry["result"] for name, entry in results.read_folder(self.out).items()}
 
     def marker(self):
-        """A number of seconds that no other process sleeps. What sleeps so long is ended with the test."""
+        """A number of seconds that no other process sleeps. Processes that sleep so long are ended with the test."""
         text = f"7{os.getpid()}{self.id().count('t')}"
         self.addCleanup(lambda: [os.kill(process, signal.SIGKILL) for process in processes_with(f"sleep\0{text}")])
         return text
 
     def runs(self, name):
-        """How often a job of counting() has run."""
+        """The number of runs of a job of counting()."""
         path = self.folder / name
         return len(path.read_text()) if path.exists() else 0
 
@@ -93,7 +93,7 @@ class OnThisMachine(InAFolder):
 
     def test_a_time_out_ends_the_job_and_its_children(self):
         marker = self.marker()
-        # One in a group of its own, one that is deaf to the first signal.
+        # One child in its own process group, and one that ignores the first signal.
         script = f"set -m; sleep {marker}.1 & (trap '' TERM; sleep {marker}.2) & sleep {marker}.3"
         begun = time.monotonic()
         with mock.patch("farm_tools.processes.GRACE", 0.5):
@@ -158,7 +158,7 @@ class Arithmetic(unittest.TestCase):
 
     def test_time_of_n_workers(self):
         self.assertEqual(plan.makespan(self.JOBS, 1), 550)
-        # Two: build-a beside z0; build-b beside x; y behind build-b.
+        # Two workers: build-a parallel to z0; build-b parallel to x; y after build-b.
         self.assertEqual(plan.makespan(self.JOBS, 2), 310)
         self.assertEqual(plan.makespan(self.JOBS, 50), 310)
         self.assertEqual(plan.makespan([Job(name, "proof", (), seconds=20 if name == "a" else 10) for name in "abcd"], 2), 30)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Records: what is refused, how they are merged, counted and kept. seeded_bugs.py says which error each test finds."""
+"""Records: refusals, merging, counts, and keeping. seeded_bugs.py lists the error that each test finds."""
 import json
 import random
 import unittest

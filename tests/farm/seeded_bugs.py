@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
-# File below scripts/, the text, what it becomes, and the test that finds it.
+# File below scripts/, original text, text with the error, and the test that finds it.
 BUGS = [
     ("records/results.py", 'return record.is_complete(entry), entry["begun"], json.dumps(entry, sort_keys=True)',
      'return record.is_complete(entry), entry["begun"]', "records_test.Merge.test_is_associative_commutative_and_idempotent"),
@@ -60,7 +60,7 @@ BUGS = [
      "", "farm_test.Catalogue.test_the_quick_sample_has_every_kind"),
     ("farm_tools/job.py", "if job.id in waiting:", "if False:", "farm_test.OnThisMachine.test_lists_that_cannot_be_run_are_refused"),
 ]
-# These take some seconds each, with a cluster of their own.
+# These take some seconds each, because each starts its own cluster.
 UNDER_SLURM = "slurm_test.UnderSlurm."
 SLURM_BUGS = [
     ("farm_tools/slurm.py", 'f"--dependency=afterok:{\':\'.join(sorted(needs))}"', '"--comment=none"',
@@ -78,7 +78,8 @@ SLURM_BUGS = [
 
 
 def complaint(bug, folder):
-    """What is wrong with a seeded bug: it changes nothing, or its test passes. Empty when the test finds it."""
+    """The complaint about a seeded bug that changes nothing, or whose test passes; empty when the test finds the
+    bug."""
     file, good, bad, test = bug
     path = folder / file
     text = path.read_text()
@@ -91,7 +92,7 @@ def complaint(bug, folder):
 
 
 def tried(bug):
-    # In the work tree, since records name its commit.
+    # The copy is inside the work tree, because records name its commit.
     (PROJECT / "build").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=PROJECT / "build") as folder:
         scripts = Path(folder) / "scripts"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""The farm under a real Slurm cluster of one node, which this starts and ends: submit, fail, requeue, cancel, run out of time,
-a build that fails, merge. Installs Slurm where it is missing (Debian). scripts/test --long farm runs it; takes some minutes."""
+"""The farm under a real Slurm cluster of one node, which the test starts and ends: submission, failures, requeueing,
+cancelling, time-outs, a failing build, merging. Installs Slurm if it is missing (Debian). scripts/test --long farm runs
+it; it takes some minutes."""
 import os
 import shlex
 import subprocess
@@ -23,7 +24,7 @@ class UnderSlurm(unittest.TestCase):
         holder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(holder.cleanup)
         cls.folder = Path(holder.name)
-        cls.folder.chmod(0o755)  # munged wants its socket where all may go
+        cls.folder.chmod(0o755)  # munged requires that all users can enter its socket's folder
         cls.begun = time.monotonic()
         line = subprocess.run([FARM, "cluster", "up", cls.folder / "cluster", "--processors", "2"], check=True,
                               stdout=subprocess.PIPE, text=True).stdout.splitlines()[-1]
@@ -72,10 +73,10 @@ class UnderSlurm(unittest.TestCase):
         self.assertIn("1 jobs run again: sometimes", self.said)
         self.assertEqual(self.farm("slurm", "wait"), 0, self.said)
         self.assertEqual(self.found()["sometimes"], "passed")
-        # Nothing is due any more.
+        # No job is due any more.
         self.submit(build, *jobs)
         self.assertIn("0 of 8 jobs are due", self.said)
-        # One is, and the build that it needs is there.
+        # One job is due, and the build that it needs exists.
         (self.out / "job-3.json").unlink()
         self.submit(build, *jobs)
         self.assertEqual(self.farm("slurm", "wait"), 0, self.said)

@@ -1,4 +1,4 @@
-"""What the tests of records and farm share."""
+"""Code that the tests of records and farm share."""
 import os
 import random
 import sys
@@ -7,14 +7,14 @@ import unittest
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
-# seeded_bugs.py tries the tests on a copy with an error.
+# seeded_bugs.py runs the tests on a copy of the scripts with an error.
 SCRIPTS = Path(os.environ.get("FARM_TEST_SCRIPTS", PROJECT / "scripts"))
 sys.path.insert(0, str(SCRIPTS))
 sys.dont_write_bytecode = True
 
 
 def a_record(job="proof-axis", **changes):
-    """A right record, with these fields changed."""
+    """A valid record with these fields changed."""
     return {"job": job, "kind": "proof", "command": "scripts/prove axis", "commit": "0123456789" * 4, "clean": True,
             "inputs": "ab" * 32, "begun": "2026-11-28T20:47:02.123Z", "seconds": 12.5, "processor_seconds": 11.0,
             "result": "passed", "exit_status": 0, "counts": {"proof_runs": 3}, "tools": {"yosys": "0.23"},
@@ -22,7 +22,7 @@ def a_record(job="proof-axis", **changes):
 
 
 def random_records(draw: random.Random):
-    """A folder's records: few jobs and times, so that many meet."""
+    """A folder's records, with few different jobs and times, so that many of them collide."""
     found = {}
     for job in draw.sample(["a", "b", "c", "d"], draw.randint(0, 4)):
         result = draw.choice(["passed", "failed", "timeout", "cancelled"])

@@ -1,5 +1,5 @@
-"""A simulated card with its owner `trammel linuxcnc`, and LinuxCNC (or halrun) in namespaces of its own, with the modules
-of the build. No other LinuxCNC on the machine is in its way, and nothing is installed."""
+"""A simulated card with its owner process `trammel linuxcnc`, and LinuxCNC (or halrun) in its own namespaces, with the
+modules of the build. It does not interfere with other LinuxCNC processes, and installs nothing."""
 
 import json
 import os
@@ -20,7 +20,7 @@ EXAMPLE = HERE.parent.parent / "examples" / "linuxcnc"
 MODULES = "/usr/lib/linuxcnc/modules"
 USER = "nobody"  # rtapi_app refuses root; the owner must be the same user
 PERIOD = 1_000_000  # ns
-UNIT = 1 << 24   # of targets, per pulse
+UNIT = 1 << 24   # units of a target per pulse
 
 
 class Bench:
@@ -60,8 +60,8 @@ class Bench:
                     print(f"--- {log}\n" + (self.folder / log).read_text()[-3000:])
 
     def configure(self, scenario, lead=30):
-        """The example, with the tests' user interface. A shared machine without a realtime kernel is late by tens of
-        milliseconds: more periods ahead, and room for the following error that this makes."""
+        """Configures the example with the tests' user interface. A shared machine without a realtime kernel is late by
+        tens of milliseconds, so the lead is longer, and the limit of the following error larger to match."""
         ini = (EXAMPLE / "trammel.ini").read_text()
         for old, new in {"DISPLAY = axis": "DISPLAY = ./ui.py", "NAME = 0": f"NAME = {self.name}",
                          "LEAD_PERIODS = 40": f"LEAD_PERIODS = {lead}", "\nFERROR = 8": "\nFERROR = 20",
@@ -77,7 +77,8 @@ class Bench:
 
     def as_user(self, arguments, priority=("chrt", "--fifo", "2")):
         user = pwd.getpwnam(USER)
-        # What is realtime at a machine goes before what else runs here; LinuxCNC before the owner, which it wakes.
+        # Processes that are realtime at a real machine get priority over all others here. LinuxCNC gets priority over
+        # the owner, which it wakes.
         return [*priority, "setpriv", "--reuid", str(user.pw_uid), "--regid", str(user.pw_gid), "--clear-groups", *arguments]
 
     def environment(self):
@@ -85,13 +86,13 @@ class Bench:
                 "TRAMMEL_LINUXCNC": self.name}
 
     def hand_over(self):
-        """The folder, to the user of both processes."""
+        """Gives the folder to the user of both processes."""
         shutil.chown(self.folder, USER)
         for file in self.folder.iterdir():
             shutil.chown(file, USER)
 
     def start_owner(self, *arguments):
-        """Waits until it is ready."""
+        """Starts the owner and waits until it is ready."""
         self.hand_over()
         out = open(self.folder / "owner.log", "a")
         begun = out.tell()
@@ -109,7 +110,7 @@ class Bench:
         return ["--engine", "model", "--clock", "1000000", "--world", "world.toml", "--record", record]
 
     def start(self, arguments):
-        """halrun or linuxcnc, as the first process of its namespace: all of it ends with it."""
+        """Starts halrun or linuxcnc as the first process of its namespace, so that all its processes end with it."""
         mounts = f"mount -t tmpfs tmpfs /tmp && mount --bind {self.folder}/modules {MODULES} && exec \"$@\""
         self.process = subprocess.Popen(
             ["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--mount-proc", "--",
@@ -122,14 +123,14 @@ class Bench:
         return path.read_text(errors="replace") if path.exists() else ""
 
     def wait_for(self, file, seconds=60):
-        """A file that the test inside writes when it has come so far."""
+        """Waits for a file that the inner test writes when it reaches a certain point."""
         wait_until(lambda: (self.folder / file).exists() or self.process.poll() is not None, seconds, file)
         if not (self.folder / file).exists():
             raise RuntimeError(f"LinuxCNC ended without {file}")
 
     def finish(self, seconds=120, lead=None):
-        """Waits for LinuxCNC, then ends the owner in order; what the test inside saw. Raises Spoiled where that failed, or
-        the motion was stopped, and the machine paused for longer than `lead` periods last."""
+        """Waits for LinuxCNC, then ends the owner in order; returns the results of the inner test. Raises Spoiled if
+        that test failed, or the motion was stopped, and this machine paused for longer than `lead` periods."""
         wait_until(lambda: self.process.poll() is not None, seconds, "the end of LinuxCNC")
         self.end_owner()
         if not (self.folder / "result.json").exists():
@@ -153,7 +154,7 @@ SKIPPED = 77  # ctest's SKIP_RETURN_CODE of these tests
 
 
 def requirements(modules):
-    """Why these tests cannot run here; empty if they can."""
+    """The reason why these tests cannot run here; empty if they can."""
     for program in ("halrun", "linuxcnc", "unshare", "setpriv", "chrt"):
         if shutil.which(program) is None:
             return f"{program} is not installed: scripts/setup --linuxcnc installs LinuxCNC"
@@ -165,7 +166,7 @@ def requirements(modules):
 
 
 def forbidden():
-    """What this system does not allow even root; empty where it allows all that is needed."""
+    """The first required operation that this system denies even to root; empty if it allows all."""
     for command in (["unshare", "--mount", "--ipc", "--net", "--pid", "--fork", "--mount-proc", "true"],
                     ["chrt", "--fifo", "1", "true"]):
         if subprocess.run(command, capture_output=True).returncode != 0:
@@ -174,11 +175,11 @@ def forbidden():
 
 
 class Spoiled(Exception):
-    """What a stall of this machine spoiled: no fault of what is tested."""
+    """A test that failed because this machine stalled, not because of the code under test."""
 
 
 def longest_pause(result):
-    """ns, of LinuxCNC's thread or of the owner, as the component measured."""
+    """The longest pause of LinuxCNC's thread or of the owner, in ns, as the component measured it."""
     return max(result["longest-period"], result["longest-silence"])
 
 
@@ -187,7 +188,8 @@ def stalled(result, lead):
 
 
 def run_tests(tests, modules):
-    """Tests that this machine's stalls spoiled, as measured, run again, three times at most. Nothing else does."""
+    """Runs the tests. A test that a measured stall of this machine spoiled runs again, at most three times; no other
+    test does."""
     reason = requirements(modules)
     if reason and os.environ.get("TRAMMEL_REQUIRE_LINUXCNC"):
         sys.exit(f"error: {reason}")

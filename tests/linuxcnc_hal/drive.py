@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-only
-"""In halrun: plays what the file `scenario` names with the joints on their generators; writes result.json."""
+"""Runs in halrun: plays the scenario that the file `scenario` names, with the joints on their generators; writes
+result.json."""
 
 import json
 import pathlib
@@ -8,7 +9,7 @@ import time
 
 import hal
 
-component = hal.component("drive")  # hal.get_value() needs one
+component = hal.component("drive")  # hal.get_value() needs a component
 component.ready()
 result = {}
 
@@ -31,7 +32,8 @@ def enable(on):
 
 
 def caught_up():
-    """The joints begin behind their generators; then the error is that of the latency, for a third of a turn."""
+    """Whether the joints, which start behind their generators, have caught up: for a third of a period, the error is no
+    larger than the latency causes."""
     hal.set_p("most.reset", "1")
     until(lambda: hal.get_value("most.max") == hal.get_value("most.min"), 1, "reset")
     hal.set_p("most.reset", "0")
@@ -44,7 +46,8 @@ def caught_up():
 
 
 def stands():
-    """At rest, and the same counts for 0.3 s, since nothing tells when nothing comes."""
+    """Whether the card is at rest and the counts stay the same for 0.3 s, because no signal tells that no more motion
+    comes."""
     if not pin("at-rest"):
         return False
     seen = counts()
@@ -68,12 +71,12 @@ def end():
 
 
 def hold():
-    """The card stands while the targets go on, and makes the way when it is released."""
+    """The card stops while the targets move on, and covers the distance after the release."""
     began = time.monotonic()
     hal.set_p("trammel.hold", "1")
     until(lambda: pin("held"), 5, "held")
     standing = counts()
-    time.sleep(0.05)  # nothing may come
+    time.sleep(0.05)  # no motion may come
     result["held"] = [standing, counts()]
     hal.set_p("trammel.hold", "0")
     result["hold"] = time.monotonic() - began
@@ -84,7 +87,7 @@ def follow():
     begin()
     begun = time.monotonic()
     lateness = 0
-    while time.monotonic() - begun < 3:  # so much motion; nothing waits for it
+    while time.monotonic() - begun < 3:  # 3 s of motion; there is no event to wait for
         lateness = max(lateness, pin("latency"))
         time.sleep(0.005)
     result["furthest"] = max(abs(hal.get_value("most.max")), abs(hal.get_value("most.min")))
@@ -109,7 +112,7 @@ def index():
 
 
 def watchdog():
-    """The owner says nothing for longer than the card's watchdog allows; has_bit, written false, clears that."""
+    """The owner is silent for longer than the card's watchdog allows. Writing false to has_bit clears the watchdog."""
     begin()
     result["bitten before"] = pin("watchdog.has_bit")
     pathlib.Path("following").touch()
@@ -121,7 +124,7 @@ def watchdog():
     result["bitten"] = [pin("watchdog.has_bit"), pin("fault")]
     hal.set_p("trammel.watchdog.has_bit", "0")
     until(lambda: not pin("fault") and not pin("watchdog.has_bit"), 10, "cleared")
-    time.sleep(0.1)  # it must not come back
+    time.sleep(0.1)  # has_bit must not rise again
     result["cleared"] = [pin("watchdog.has_bit"), pin("fault"), pin("stop-cause")]
     standing = counts()
     enable(True)
@@ -131,7 +134,7 @@ def watchdog():
 
 try:
     globals()[pathlib.Path("scenario").read_text().strip()]()
-except Exception as error:  # the test tells it
+except Exception as error:  # the test reports it
     result["failure"] = repr(error)
 for name in ("longest-read", "longest-write", "longest-period", "longest-silence", "underrun", "late", "dropped", "refused",
              "packet-error-total", "stop-cause", "read.tmax", "write.tmax"):

@@ -17,7 +17,7 @@ from record import Record
 TRAMMEL, MODULES = sys.argv[1:3]
 LEAD = 30
 AMPLITUDE, FREQUENCY = 4, 1  # mm, Hz: of joint 0
-FASTEST = 2 * math.pi * FREQUENCY * (1 + 2 / 8) * AMPLITUDE  # mm/s, of joint 2: 31 mm/s, at 250 mm/s^2
+FASTEST = 2 * math.pi * FREQUENCY * (1 + 2 / 8) * AMPLITUDE  # mm/s; joint 2: 31 mm/s, with 250 mm/s^2
 HAL = """loadrt threads name1=servo period1={period}
 loadrt trammel name={name} joints=3
 loadrt siggen num_chan=3
@@ -61,7 +61,7 @@ def start(bench, scenario, *arguments):
 
 
 def follows():
-    """Three joints on their generators; a hold stands on the path, and nothing of it is lost."""
+    """Three joints follow their generators. A hold stops them on the path, and no step is lost."""
     with Bench(TRAMMEL, MODULES) as bench:
         start(bench, "follow")
         result = bench.finish(40, LEAD)
@@ -69,9 +69,9 @@ def follows():
         if late and stalled(result, LEAD):
             raise Spoiled(f"{result}")
         check(not late and result["link-ok"], f"{result}")
-        # The stated latency is that of the periods ahead, two more, and two that the owner lets stand; what the owner
-        # paused and what LinuxCNC's thread, too slow for a while, made up for, as measured, comes on top. The feedback
-        # trails by no more than the latency told, at the speed of the fastest joint.
+        # The reported latency is at most the lead, plus two periods, plus two that the owner tolerates, plus measured
+        # pauses: those of the owner, and the time that LinuxCNC's thread caught up after it was late. The feedback lags
+        # by at most the reported latency times the speed of the fastest joint.
         record = Record(bench.folder / "record")
         caught_up = record.caught_up(PERIOD)
         paused = (max(result["longest-period"], caught_up) + result["longest-silence"]) * 1e-9
@@ -89,7 +89,8 @@ def follows():
 
 
 def linuxcnc_first():
-    """LinuxCNC's rtapi_app, with root's rights, makes the memory as the user who runs it; the owner comes later."""
+    """LinuxCNC's rtapi_app, which has root's rights, creates the shared memory as the user who runs it; the owner
+    starts later."""
     with Bench(TRAMMEL, MODULES) as bench:
         bench.write("scenario", "begin_and_end")
         bench.write("drive.hal", script(bench.name))
@@ -116,7 +117,7 @@ bounce = 0
 
 
 def index():
-    """The index edge, as the card captures it, becomes the joint's zero."""
+    """The index edge that the card captures becomes the joint's zero."""
     with Bench(TRAMMEL, MODULES) as bench:
         bench.write("world.toml", bench.text("world.toml") + WORLD)
         machine = bench.text("machine.toml")
@@ -125,13 +126,15 @@ def index():
         start(bench, "index")
         result = bench.finish(40, LEAD)
         zeros = [round(zero, 6) for zero in result["zeros"]]
-        # The carriage closes the switch, a pulse behind its field. Each ms that the place is late is two pulses.
+        # The carriage, which lags its motor field by a pulse, closes the switch. A delay of the captured position by 1
+        # ms would show as two pulses.
         check(0 <= zeros[0] - 80 * INDEX_AT <= 1 and zeros[1:] == [0, 0], f"zeros at pulses {zeros}")
         print(f"zeros at pulses {zeros}; {result}")
 
 
 def watchdog():
-    """The owner is stopped for longer than the card's watchdog allows: has_bit rises, and clears what it stopped."""
+    """The owner is stopped for longer than the card's watchdog allows: has_bit rises, and clearing it releases the
+    stop."""
     with Bench(TRAMMEL, MODULES) as bench:
         owner = start(bench, "watchdog", "--set", "motion.watchdog=0.4")
         bench.wait_for("following")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""LinuxCNC without a screen on a simulated card, by the component `trammel`.
+"""Headless LinuxCNC drives a simulated card through the component `trammel`.
 
     headless_test.py TRAMMEL MODULES [TEST ...]
 """
@@ -24,7 +24,7 @@ def start(bench, scenario):
 
 
 def play(bench, scenario, seconds):
-    """A scenario without injected stops; what the test inside saw."""
+    """Plays a scenario without injected stops; returns the results of the inner test."""
     start(bench, scenario)
     return bench.finish(seconds, LEAD)
 
@@ -41,7 +41,7 @@ def judge_record(bench, result, least):
 
 
 def short():
-    """Home with switches, jog, G0 to G3, G38.2, feed hold, abort, emergency stop, and on from there."""
+    """Homing with switches, jogging, G0 to G3, G38.2, feed hold, abort, emergency stop, and motion after it."""
     with Bench(TRAMMEL, MODULES) as bench:
         result = play(bench, "short", 90)
         check(not result["errors"], f"messages: {result['errors']}")
@@ -49,7 +49,8 @@ def short():
         near(result["home"], (0, 0, 0), 0.013, "home")
         near(result["jogged"], (3, 0, 0), 0.013, "jog")
         check(result["probed"][0], "the probe did not touch")
-        # The plate is at -20; LinuxCNC sees it when the status comes, and says where the feedback was: 15 mm/s.
+        # The plate is at -20 mm. LinuxCNC sees the contact with the next status and reports the feedback at that time,
+        # at 15 mm/s.
         near(result["probed"][1:], (-20,), 0.2, "probe")
         near(result["program"], (10, 10, -6), 0.013, "end of the program")
         check(result["held"], "moved in the feed hold")
@@ -59,14 +60,15 @@ def short():
         check(result["homed after"] == [1, 1, 1], "no longer homed after the emergency stop")
         near(result["back"], (0, 0, 0), 0.013, "the way back")
         judge_record(bench, result, 3000)
-        # Switches at -20 mm, -20 mm and 10 mm, which are -2, -2 and 2 of the homed machine; 2 mm/s times the lateness.
+        # The switches at -20 mm, -20 mm and 10 mm are at -2, -2 and 2 mm of the homed machine. The tolerance is 2 mm/s
+        # times the latency.
         near([count / 80 for count in result["counts"]], (-18, -18, 8), 2 * 0.06, "zero of the homed machine")
         for name in ("longest-read", "longest-write", "longest-period", "longest-silence"):
             print(f"{name}: {result[name] / 1000:.0f} us")
 
 
 def dropped():
-    """One period in a hundred never comes: the next line is longer, and nothing is lost."""
+    """One period in a hundred is dropped: the next line is longer, and no motion is lost."""
     with Bench(TRAMMEL, MODULES) as bench:
         result = play(bench, "dropped", 90)
         check(result["dropped"] > 30, f"only {result['dropped']} periods were dropped")
@@ -95,13 +97,15 @@ def add(bench, file, behind, text):
 
 
 def index_and_hold():
-    """X homes to its index edge, as the card captures it; the pin hold stands on the path, and nothing of it is lost."""
+    """X homes to the index edge that the card captures. The pin `hold` stops the card on the path, and no step is
+    lost."""
     with Bench(TRAMMEL, MODULES) as bench:
         bench.write("world.toml", bench.text("world.toml") + WORLD)
         add(bench, "machine.toml", "x_limit_plus = 1", "\nx_index = 7")
         add(bench, "trammel.hal", "joint.0.home-sw-in\n", "net x-index joint.0.index-enable <=> trammel.joint.00.index-enable\n")
         bench.configure("index_and_hold", LEAD)
-        # Off the switch and on to the mark, at 10 mm/s: 0.8 pulses per ms that the place would be late.
+        # From the switch to the index mark at 10 mm/s: a delay of the captured position would show as 0.8 pulses per
+        # ms.
         ini = bench.text("trammel.ini")
         old = "HOME_LATCH_VEL = -2\n"
         check(old in ini, f"trammel.ini has no {old!r}")
@@ -110,7 +114,8 @@ def index_and_hold():
         bench.start(["linuxcnc", "-r", "trammel.ini"])
         result = bench.finish(90, LEAD)
         check(not result["errors"] and result["underrun"] == 0 and result["refused"] == 0, f"{result}")
-        # HOME_OFFSET -2, HOME 0: the joint rests 2 mm from the edge; the carriage is a pulse behind its field.
+        # HOME_OFFSET -2, HOME 0: the joint comes to rest 2 mm from the edge; the carriage lags its motor field by a
+        # pulse.
         edge = result["homed at"][0] - 2 * 80
         check(not result["index"] and 0 <= edge - 80 * INDEX_AT <= 1, f"homed at {result['homed at']}: edge at pulse {edge}")
         check(result["held"][0] == result["held"][1], f"it moved in the hold: {result['held']}")
@@ -120,7 +125,7 @@ def index_and_hold():
 
 
 def owner_stops_briefly():
-    """The owner is stopped for 20 ms in a motion: less than what is ahead, nothing is to be seen."""
+    """The owner is stopped for 20 ms during a motion. That is less than the lead, so it has no visible effect."""
     with Bench(TRAMMEL, MODULES) as bench:
         owner = start(bench, "long_move")
         bench.wait_for("moving")
@@ -135,7 +140,7 @@ def owner_stops_briefly():
 
 
 def owner_is_killed():
-    """The machine goes off, LinuxCNC tells why, nothing moves; a new owner moves nothing either."""
+    """The machine switches off, LinuxCNC reports why, and nothing moves. A new owner moves nothing either."""
     with Bench(TRAMMEL, MODULES) as bench:
         owner = start(bench, "killed")
         bench.wait_for("moving")
@@ -151,7 +156,7 @@ def owner_is_killed():
 
 
 def owner_is_stopped():
-    """Stopped for good: the realtime functions go on, in their usual time."""
+    """The owner is stopped for good: the realtime functions continue and take no longer than usual."""
     with Bench(TRAMMEL, MODULES) as bench:
         owner = start(bench, "killed_only")
         bench.wait_for("moving")

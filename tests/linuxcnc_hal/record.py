@@ -1,11 +1,11 @@
-"""The record of `trammel linuxcnc --record`, judged by the closed form: behind each period every axis is at its target,
-rounded, and within a period it is on the straight line between two targets."""
+"""The record of `trammel linuxcnc --record`, judged by the closed form: at the end of each period every axis is at its
+rounded target, and within a period it is on the straight line between two targets."""
 
 from bench import UNIT, check
 
 
 class Stream:
-    """From the machine's switching on until its end."""
+    """The record from switching the machine on until its end."""
 
     def __init__(self, standing):
         self.standing = standing  # pulses
@@ -13,11 +13,12 @@ class Stream:
         self.steps = []           # (clock, command, axis, direction)
 
     def furthest(self, lead):
-        """Largest distance, in pulses, between a target and the axis when its line has ended; how many lines. Only lines
-        before the last step count: what the machine's end left in the queue has none."""
+        """Largest distance, in pulses, between a target and the axis at the end of its line, and the number of lines.
+        Only lines before the last step count, because lines left in the queue at the machine's end make no steps."""
         steps = {}
         for _, command, axis, direction in self.steps:
-            # The stream counts its commands: behind the first lines, as many as the lead, comes one that is no line.
+            # Steps have the number of their command in the stream. After the first `lead` lines, the stream has one
+            # command that is no line.
             steps.setdefault(command if command < lead else command - 1, []).append((axis, direction))
         at, most = list(self.standing), 0.0
         whole = self.lines[:max(steps, default=0)]
@@ -29,8 +30,8 @@ class Stream:
 
 
     def caught_up(self, period):
-        """ns: the most that LinuxCNC's thread, behind its time, made up for. So much more than its lead stands in the
-        card's queue then: periods that came late were queued while the thread was behind."""
+        """The longest time, in ns, that LinuxCNC's thread caught up after it was late. The card's queue then has this
+        much more than the lead, because the late periods arrived in quick succession."""
         lateness = [time - number * period for number, time, _, _ in self.lines]
         most, behind = 0, max(lateness[:1], default=0)
         for late in lateness:
@@ -59,7 +60,8 @@ class Record:
         return max(stream.caught_up(period) for stream in self.streams)
 
     def judge(self, least, lead):
-        """Every axis within half a pulse of every target, in at least so many lines. What it found, for the log."""
+        """Checks that every axis is within half a pulse of every target, in at least `least` lines; returns a text for
+        the log."""
         found = [stream.furthest(lead) for stream in self.streams]
         most, lines = max(most for most, _ in found), sum(lines for _, lines in found)
         check(lines >= least, f"{lines} lines were compared, fewer than {least}")

@@ -11,7 +11,7 @@ import linuxcnc
 from linuxcnc_ui import command, idle, mode, play, poll, result, start_program, stat, until, wait_idle
 import linuxcnc_ui
 
-component = hal.component("test-ui")  # hal.get_value() needs one
+component = hal.component("test-ui")  # hal.get_value() needs a component
 component.ready()
 
 
@@ -67,7 +67,7 @@ def prepare():
 
 
 def standing():
-    """The card stands: the same counts for 50 ms, since nothing tells when nothing comes."""
+    """Whether the card is at rest: the same counts for 50 ms, because no signal tells that no more motion comes."""
     seen, since = None, time.monotonic()
     end = since + 10
     while time.monotonic() - since < 0.05:
@@ -133,7 +133,7 @@ def dropped():
 
 
 def index_and_hold():
-    """X homes to its index mark; then the card holds in a motion, while LinuxCNC's command goes on."""
+    """X homes to its index mark; then the card holds during a motion, while LinuxCNC's command goes on."""
     prepare()
     result["index"] = hal.get_value("trammel.joint.00.index-enable")
     result["homed at"] = standing()

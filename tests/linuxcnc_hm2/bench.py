@@ -1,8 +1,8 @@
-"""Two networks that nobody else sees: `trammel serve --hm2` in one, LinuxCNC as an ordinary user in the other.
+"""Two private networks: `trammel serve --hm2` in one, LinuxCNC as an ordinary user in the other.
 
-hm2_eth flushes iptables, writes ARP entries and sends to the address that the card tells, so it gets a network
-namespace, which needs root. LinuxCNC also gets an IPC, a mount and a process namespace of its own: its shared memory,
-its lock in /tmp and the programs that it ends by name are those of this test alone.
+hm2_eth flushes iptables, writes ARP entries and sends to the address that the card reports, so it gets a network
+namespace, which needs root. LinuxCNC also gets its own IPC, mount and process namespaces, so that its shared memory,
+its lock in /tmp and the programs that it ends by name belong only to this test.
 """
 import os
 import pathlib
@@ -21,9 +21,10 @@ EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples" / "linuxcnc-
 CARD, DRIVER = "192.168.81.2", "192.168.81.1"
 USER = "nobody"
 PROGRAMS = ["unshare", "nsenter", "ip", "setpriv", "chrt", "halrun", "linuxcnc", "rtapi_app"]
-# Where this is allowed: a card is no process beside LinuxCNC, whose driver waits for its answers without sleeping; and
-# LinuxCNC's thread, which has no realtime kernel here, is late for hundreds of milliseconds on a busy machine. Only that
-# thread: programs of one priority wait for each other.
+# Realtime priorities, if the system allows them. The card needs one, because a real card does not share the processor
+# with LinuxCNC, whose driver waits for answers without sleeping. LinuxCNC's thread needs one, because without a
+# realtime kernel it is late by hundreds of milliseconds on a busy machine. Only that thread gets it, because programs
+# of equal priority wait for each other.
 CARD_PRIORITY = ["chrt", "-f", "5"]
 THREAD_PRIORITY = ["chrt", "-a", "-f", "-p", "3"]
 SKIP = 77
@@ -35,7 +36,7 @@ def skip(reason):
 
 
 def in_own_network():
-    """Starts the test again in a network namespace of its own, where this process is not in one yet."""
+    """Restarts the test in its own network namespace, unless this process is in one already."""
     os.environ["PATH"] += ":/usr/sbin:/sbin"
     missing = [program for program in PROGRAMS if shutil.which(program) is None]
     if missing:
@@ -66,7 +67,7 @@ def wait_until(holds, seconds, what):
 
 
 class Bench:
-    """The veth pair, the card at one end, and what LinuxCNC's side runs at the other."""
+    """The veth pair, with the card at one end and LinuxCNC's side at the other."""
 
     def __init__(self, trammel, *options):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-hm2-", dir="/var/tmp"))
@@ -103,7 +104,7 @@ class Bench:
         return self.notes_file.read_text()
 
     def copy(self, name, *changes):
-        """An example's file for LinuxCNC's side; each change is (what, by what)."""
+        """Copies an example's file for LinuxCNC's side; each change is (old text, new text)."""
         text = (EXAMPLES / name).read_text()
         for old, new in changes:
             if old not in text:
@@ -114,7 +115,7 @@ class Bench:
         target.chmod(0o755)
 
     def start(self, *command):
-        """As an ordinary user, in the folder, which is also /tmp."""
+        """Starts a command as an ordinary user in the folder, which is also mounted as /tmp."""
         mount = f'mount --bind {self.folder} /tmp && cd /tmp && exec setpriv --reuid {USER} --regid nogroup --clear-groups "$@"'
         environment = {"HOME": "/tmp", "PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "LANG": "C.UTF-8"}
         self.output_file = self.folder / "output.txt"
@@ -137,7 +138,8 @@ class Bench:
             raise AssertionError(f"LinuxCNC's side has not ended within {seconds} s:\n{self.output()}\n{self.notes()}")
 
     def run(self, seconds, *command):
-        """Starts and finishes it; again where the driver's first queued read has met its fixed 1.6 ms (error -11)."""
+        """Runs a command to its end; repeats it if the driver's first queued read exceeded its fixed 1.6 ms (error
+        -11)."""
         for _ in range(10):
             process = self.start(*command)
             self.finish(process, seconds)
@@ -148,7 +150,7 @@ class Bench:
         return self.output()
 
     def end_server(self):
-        """The server's last words: (counts by name, pulses at the pins, counters)."""
+        """The server's final output: (counts by name, pulses at the pins, counters)."""
         self.server.send_signal(signal.SIGINT)
         self.server.wait(20)
         notes = self.notes()
@@ -163,7 +165,7 @@ class Bench:
 
 
 def rtapi_app():
-    """The process of the realtime threads, of this network alone; None where there is none yet."""
+    """The process of the realtime threads in this namespace; None if there is none yet."""
     mine = os.readlink("/proc/self/ns/net")
     for entry in pathlib.Path("/proc").iterdir():
         try:

@@ -12,9 +12,10 @@ import time
 
 import bench
 
-X_SCALE, Y_SCALE = 200, -200  # pulses a unit, as in sine.hal
+X_SCALE, Y_SCALE = 200, -200  # pulses per unit, as in sine.hal
 LINUXCNC_FILES = ["machine.ini", "machine.hal", "program.ngc", "run_program.py", "tools.tbl"]
-# A thread that is 5 ms late moves on at its velocity for so long; on a busy machine that adds up to more than 10 mm.
+# If a thread is 5 ms late, the axis continues at its velocity for that time; on a busy machine, that adds up to more
+# than 10 mm.
 WITHOUT_FERROR = [("FERROR = 10", "FERROR = 1000")]
 PROGRAM_END, SCALES = (12.345, -7.655, 3.005), (200, 200, -400)  # of program.ngc and machine.ini
 
@@ -23,7 +24,8 @@ WATCHDOG = 200  # ms, of both HAL files
 
 
 class HostWasLate(Exception):
-    """The driver sent nothing for longer than its watchdog's time, by the kernel's stamps: the card was right to stop."""
+    """The driver sent nothing for longer than its watchdog's time, by the kernel's time stamps, so the card stopped
+    correctly."""
 
 
 def expect_no_bite(bitten, numbers, text):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What the planner module gives and takes: all 30 functions of LinuxCNC's planner interface; and no function that
-waits, allocates or takes a lock. `calls_test.py MODULE`."""
+"""Symbols of the planner module: it exports all 30 functions of LinuxCNC's planner interface, and calls no function
+that waits, allocates or takes a lock. `calls_test.py MODULE`."""
 
 import subprocess
 import sys
@@ -9,7 +9,8 @@ FUNCTIONS = """tcqFull tpAbort tpActiveDepth tpAddCircle tpAddLine tpAddRigidTap
 tpGetExecTag tpGetMotionType tpGetPos tpIsDone tpMotData tpMotFunctions tpPause tpQueueDepth tpResume tpRunCycle
 tpSetAmax tpSetAout
 tpSetCycleTime tpSetDout tpSetId tpSetPos tpSetRunDir tpSetSpindleSync tpSetTermCond tpSetVlimit tpSetVmax""".split()
-# While the module is loaded; then in LinuxCNC's periods (the system call is FUTEX_WAKE; messages go to a ring).
+# Allowed calls while the module loads; then those in LinuxCNC's periods (the system call is FUTEX_WAKE; messages go to
+# a ring).
 AT_LOAD = "__errno_location fcntl fcntl64 fstat ftruncate getenv mmap open open64 snprintf strerror hal_exit hal_init "\
     "hal_malloc hal_pin_bit_newf hal_pin_u32_newf hal_ready __stack_chk_fail".split()
 IN_PERIODS = "fmin rtapi_get_time rtapi_print_msg syscall memcpy memset __stack_chk_fail".split()

@@ -1,4 +1,5 @@
-"""Headless LinuxCNC with the planner module, in namespaces of its own: no other LinuxCNC is in its way."""
+"""Headless LinuxCNC with the planner module, in its own namespaces, so that other LinuxCNC processes do not
+interfere."""
 
 import json
 import os
@@ -59,7 +60,7 @@ net z joint.2.motor-pos-cmd => joint.2.motor-pos-fb
 net user-enable iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
 net probe => motion.probe-input
 """
-# Behind `trammel linuxcnc`.
+# The HAL file for the card behind `trammel linuxcnc`.
 HAL_COMPONENT = """loadrt trammel joints=[KINS]JOINTS
 loadrt not names=card-well
 loadrt and2 names=may-run
@@ -108,16 +109,16 @@ def changed(text, changes):
 
 
 class Headless:
-    """One run of LinuxCNC; `scenario` is a function of ui.py, which writes what it saw to result.json. With `trammel` the
-    owner is `trammel linuxcnc`, with `arguments` and `engine`, its name and clock; `changes`: texts of the INI file and what
-    stands there instead; `hal`: more lines of the HAL file."""
+    """One run of LinuxCNC. `scenario` is a function of ui.py, which writes its results to result.json. With `trammel`,
+    the owner is `trammel linuxcnc` with `arguments` and with `engine`, its name and clock. `changes` replaces texts of
+    the INI file; `hal` has more lines of the HAL file."""
 
     def __init__(self, owner, module, scenario, program="", surface=None, trammel=None, arguments=(), changes=(), hal="",
                  engine=("model", 1_000_000)):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="trammel-planner-", dir="/var/tmp"))
         self.name = f"test{os.getpid()}"
         self.owner_command = [owner, self.name, "owner.log", *([str(surface)] if surface is not None else [])]
-        # The Verilated card needs most of a core to keep to the time.
+        # The Verilated card needs most of a core to run in real time.
         self.priority = ["chrt", "--rr", "1"] if engine[0] == "rtl" and os.geteuid() == 0 else []
         middle = HAL_ECHO
         if trammel is not None:
@@ -179,7 +180,7 @@ class Headless:
         return (self.folder / "linuxcnc.out").read_text()[-3000:]
 
     def finish(self, seconds=120):
-        """Waits for the end; gives back ui.py's result and the owner's log as lists of words."""
+        """Waits for the end; returns ui.py's result, and the owner's log as lists of words."""
         try:
             self.linuxcnc.wait(seconds)
         finally:

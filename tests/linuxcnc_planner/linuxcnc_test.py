@@ -18,7 +18,7 @@ sys.dont_write_bytecode = True
 from headless import Headless  # noqa: E402
 
 OWNER, MODULE, TRAMMEL = (str(pathlib.Path(name).resolve()) for name in sys.argv[1:4])
-PULSES = 80  # a mm
+PULSES = 80  # per mm
 
 EVERY_KIND = """G21 G90 G17 G64
 F3000
@@ -86,7 +86,7 @@ def path():
 
 
 def whole():
-    """The same with the HAL component and `trammel linuxcnc`, against `trammel run`."""
+    """As path(), but with the HAL component and `trammel linuxcnc`, against `trammel run`."""
     seen, log = play("program", EVERY_KIND, trammel=TRAMMEL)
     made = [(int(words[3]), int(words[4])) for words in log if words[0] == "step"]
     expected = run_at_the_card(EVERY_KIND)
@@ -96,7 +96,7 @@ def whole():
 
 
 def whole_rtl():
-    """As whole(), with the Verilated card in lockstep with the model, in real time: at a clock that it keeps up with."""
+    """As whole(), but with the Verilated card in lockstep with the model, at a clock at which it runs in real time."""
     clock = 100_000
     seen, log = play("program", EVERY_KIND, trammel=TRAMMEL, engine=("rtl", clock))
     made = [(int(words[3]), int(words[4])) for words in log if words[0] == "step"]
@@ -138,7 +138,8 @@ def stalls():
 
 
 def probe():
-    """What LinuxCNC takes for the probe's place is the card's capture, not where LinuxCNC saw the pin."""
+    """LinuxCNC must take the probe's position from the card's capture, not from the time at which LinuxCNC saw the
+    pin."""
     seen, log = play("probe", surface=-3)
     made = of(log, "probe")
     require(len(made) == 2 and made[0][0] == 1 and made[1][0] == 0, made)
@@ -159,7 +160,7 @@ def pause_and_abort():
     stopped = [sum(direction for axis, direction in made[:same] if axis == n) for n in range(3)]
     told = [round(value * PULSES) for value in seen["aborted"]]
     require(0 < same < len(whole), "the abort came too late")
-    # The motion behind the abort may begin with steps that the path would have had, too.
+    # The motion after the abort may begin with steps that equal those of the aborted path.
     require(all(abs(a - b) <= 40 for a, b in zip(stopped, told)), (stopped, told))
     require(seen["after"] == [1, 2, 3] and seen["errors"] == [], seen)
     return f"on the path up to step {same} of {len(whole)}"
@@ -186,7 +187,7 @@ def outputs():
     expected = [([0, 0, 0], 0), ([0, 1, 0], 2.5), ([0, 0, 1], 2.5)]
     require(changes == expected, seen)
     places = [place[0] for _, _, place in seen["outputs"][1:]]
-    # 20 mm/s, and ui.py looks some milliseconds later.
+    # At 20 mm/s; ui.py reads the position some milliseconds later.
     require(all(0 <= place - due < 1 for place, due in zip(places, (4, 8))), f"at {places}")
     require(seen.get("waited") == [[1, 0], [1, 0]], f"it did not wait for the spindle: {seen}")
     return f"switched at X {places[0]:.2f} and {places[1]:.2f}; the first feed waited for the spindle"
@@ -217,8 +218,8 @@ M2
 
 
 def card_outputs():
-    """M62 to M65 switch the card's outputs that the machine file names, in their places, and LinuxCNC's pins."""
-    named = ["--set", "outputs.p0=3", "--set", "outputs.p1=[1, 2]"]  # P2 switches LinuxCNC's pin alone
+    """M62 to M65 switch the card's outputs that the machine file names, at the right positions, and LinuxCNC's pins."""
+    named = ["--set", "outputs.p0=3", "--set", "outputs.p1=[1, 2]"]  # P2 switches only LinuxCNC's pin
     seen, log = play("card_outputs", CARD_OUTPUTS, trammel=TRAMMEL, arguments=named)
     at, levels, changes, clocks = 0, 0, [], {}
     for words in log:
@@ -229,7 +230,7 @@ def card_outputs():
             levels = int(words[2])
             changes.append((levels, at / PULSES))
     require(changes == [(0b0110, 4), (0, 8), (0b1000, 12), (0, 14)], f"outputs and places in mm: {changes}")
-    # In the motion at 20 mm/s, 625 clocks a pulse, nothing slows down for them; M64 and M65 stop.
+    # M62 and M63 do not slow down the motion of 20 mm/s, which is 625 clocks per pulse; M64 and M65 stop it.
     gaps = {place: clocks[place * PULSES + 1] - clocks[place * PULSES] for place in (4, 8, 12, 14)}
     require(gaps[4] <= 640 and gaps[8] <= 640 and gaps[12] > 2000 and gaps[14] > 2000, f"clocks between steps: {gaps}")
     pins = [out for out, _, _ in seen["outputs"]]
@@ -273,7 +274,8 @@ def totals(steps):
 
 
 def inches():
-    """A program in inches on a machine in mm, and on one in inches: each axis's steps and the end of `trammel run`."""
+    """A program in inches, on a machine in mm and on one in inches, must give the steps and the end position of
+    `trammel run`."""
     expected = totals(run_at_the_card(INCHES))
     require(expected[0][1] == round(0.1234 * 25.4 * PULSES), f"{expected}")
     for units, arguments, changes, end in (("mm", (), (), [25.4 * v for v in (0.1234, 0.321, -0.0456)]),
@@ -301,7 +303,7 @@ def named_refusal(seen, words):
 
 
 def refusals():
-    """Each named as an error of LinuxCNC, and nothing moves."""
+    """Each refusal must appear as an error of LinuxCNC, and nothing may move."""
     seen, _ = play("refusals")
     told = [named_refusal(seen, "spindle-synchronous")]
     require(seen["position"] == [0, 0, 0], seen)

@@ -23,14 +23,14 @@ hal.connect("planner-ui.at-speed", "at-speed")
 
 
 def connect(pin, signal, kind, target):
-    """Of a scenario: the HAL file runs before this component is there."""
+    """Connects a pin for a scenario, because the HAL file runs before this component exists."""
     hal.new_sig(signal, kind)
     hal.connect(f"planner-ui.{pin}", signal)
     hal.connect(target, signal)
 
 
 def linked():
-    """Owner and modules know each other; without the HAL component there is but one link."""
+    """Whether owner and modules are connected; without the HAL component there is only one link."""
     links = [pin for pin in ("trammel-planner.link-ok", "trammel.link-ok") if pin in names]
     return all(hal.get_value(pin) for pin in links)
 
@@ -88,7 +88,7 @@ def pause_and_abort():
     command.auto(linuxcnc.AUTO_PAUSE)
     until(lambda: stat.paused and stat.current_vel < 1e-6, 20, "paused")
     held = list(stat.position[:3])
-    time.sleep(0.5)  # nothing to wait for: nothing may come
+    time.sleep(0.5)  # no event to wait for: no motion may come
     poll()
     result["held"] = [held, list(stat.position[:3])]
     command.auto(linuxcnc.AUTO_RESUME)
@@ -110,7 +110,7 @@ def pause_and_abort():
 
 
 def outputs():
-    """M62 to M67 in their places, and the first feed waits for the spindle."""
+    """M62 to M67 act at the right positions, and the first feed waits for the spindle."""
     component["at-speed"] = False
     start_program()
     seen = []
@@ -143,7 +143,7 @@ def card_outputs():
 
 
 def jogs():
-    """Jogs end between two pulses; the motions behind them begin on one, and nothing adds up."""
+    """Jogs end between two pulses; the motions after them start on a pulse, and the differences do not add up."""
     for n in range(5):
         mode(linuxcnc.MODE_MANUAL)
         command.teleop_enable(1)
@@ -174,7 +174,7 @@ def refusals():
 
 
 def refusals_under_way():
-    """A reverse run is refused, and the path goes on; at a negative adaptive feed it stands."""
+    """A reverse run is refused, and the path continues; a negative adaptive feed stops it."""
     connect("adaptive", "adaptive", hal.HAL_FLOAT, "motion.adaptive-feed")
     mdi("M52 P1")
     start_program()
@@ -193,7 +193,7 @@ def refusals_under_way():
     result["negative"], result["errors"] = list(result["errors"]), []
     until(lambda: stat.current_vel < 1e-6, 20, "standing")
     held = list(stat.position[:3])
-    time.sleep(0.3)  # nothing may come
+    time.sleep(0.3)  # no motion may come
     poll()
     result["stood"] = [held, list(stat.position[:3])]
     component["adaptive"] = 1

@@ -1,5 +1,5 @@
-# Whether the component ${COMPONENT}, installed alone below ${PREFIX}/${COMPONENT}, holds what it should, nothing else, and
-# works there.
+# Checks that the component ${COMPONENT}, installed alone below ${PREFIX}/${COMPONENT}, has exactly the expected files
+# and works there.
 set(root "${PREFIX}/${COMPONENT}")
 file(GLOB_RECURSE found RELATIVE "${root}" "${root}/*")
 list(SORT found)
@@ -46,7 +46,7 @@ elseif(COMPONENT STREQUAL "rtl")
   file(STRINGS "${SOURCE}/rtl/trammel.f" sources REGEX "^[^/].*\\.sv$")
   list(TRANSFORM sources PREPEND "${rtl}/")
   expect_files("${rtl}/trammel.f" "${rtl}/trammel.core" "${rtl}/lint/waivers.vlt" ${sources})
-  # As a user's own flow would: nothing but the list.
+  # Reads the RTL as a user's flow would: with nothing but the file list.
   expect_success("${VERILATOR}" --lint-only -Wall "${root}/${rtl}/lint/waivers.vlt" --top-module trammel_card
     -F "${root}/${rtl}/trammel.f")
 elseif(COMPONENT STREQUAL "development")

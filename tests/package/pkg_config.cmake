@@ -1,5 +1,5 @@
-# Whether a C and a C++ program compile, link and run by the installed pkg-config files, and whether each C++ library has
-# everything that it needs in its file.
+# Checks that a C and a C++ program compile, link and run with the installed pkg-config files, and that the file of each
+# C++ library lists everything that the library needs.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE "${SCRATCH}")
 file(MAKE_DIRECTORY "${SCRATCH}")
@@ -16,7 +16,7 @@ function(run)
   set(output "${out}" PARENT_SCOPE)
 endfunction()
 
-# flags(result argument...): what pkg-config prints, as a list.
+# flags(result argument...): the output of pkg-config as a list.
 function(flags result)
   run("${PKG_CONFIG}" ${ARGN})
   separate_arguments(output UNIX_COMMAND "${output}")
@@ -30,14 +30,14 @@ flags(cpp --cflags --libs trammel-world)
 run("${CXX_COMPILER}" -std=c++17 ${CXX_FLAGS} "${CXX_PROGRAM}" -o cpp_program ${cpp})
 run(./cpp_program)
 
-# Every object of each library: one that needs what its file does not name leaves a symbol undefined.
+# Links every object of each library, so that a dependency that its file lacks leaves an undefined symbol.
 file(WRITE "${SCRATCH}/empty.cpp" "int main() {}\n")
 run("${CXX_COMPILER}" ${CXX_FLAGS} -c empty.cpp -o empty.o)
 file(GLOB archives "${PREFIX}/${LIBDIR}/*.a")
 list(LENGTH archives count)
 file(GLOB descriptions "${folder}/trammel-*.pc")
 list(LENGTH descriptions described)
-math(EXPR expected "${count} + 1")  # the card map is headers alone
+math(EXPR expected "${count} + 1")  # the card map is header-only
 if(count EQUAL 0 OR NOT described EQUAL expected)
   message(FATAL_ERROR "${count} static libraries and the card map have ${described} files in ${folder}")
 endif()

@@ -1,4 +1,4 @@
-# Whether the sizes and speeds in README.md's table are those recorded in boards/results, which a script writes.
+# Checks that the sizes and speeds in README.md's table are those recorded in boards/results, which a script writes.
 file(READ "${SOURCE}/README.md" readme)
 foreach(build IN ITEMS "hx8k-card;LC" "hx8k-lines;LC" "ecp5-card;COMB")
   list(GET build 0 name)

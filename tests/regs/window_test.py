@@ -1,5 +1,5 @@
-"""What scripts/registers/window.py refuses: the plan of the register window, tried with one fault at a time; and how
-scripts/generate-registers says so."""
+"""scripts/registers/window.py must refuse plans of the register window with one error each, and
+scripts/generate-registers must report it."""
 
 import dataclasses
 import importlib.util

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""bCNC (Debian's package) in front of `trammel grbl`, as its user works with it. bCNC runs under Xvfb and is driven by
-its web pendant, whose requests are the commands of its command line. A second client of the server reads along: all
-judgements are of the controller's reports and of the steps that the card made.
+"""bCNC (Debian's package) connected to `trammel grbl`, as a user works with it. bCNC runs under Xvfb, and the test
+drives it through its web pendant, whose requests are the commands of its command line. A second client of the server
+reads along: the test judges only the controller's reports and the steps that the card made.
 
     bcnc.py TRAMMEL PROGRAM MACHINE
 
-TRAMMEL is the command, PROGRAM a program for a walk of some seconds, MACHINE examples/first-machine.toml.
-Exit status 0 when all is as it must be, 1 when it is not.
+TRAMMEL is the command, PROGRAM a program that takes some seconds, MACHINE examples/first-machine.toml. Exit status 0
+when everything is correct, else 1.
 """
 import json
 import math
@@ -26,13 +26,13 @@ import urllib.request
 
 from grbl_server import LONGEST, Server, by_run, order_of
 
-START = (20.0, 20.0, -20.0)  # mm, where the walks set their work zero
+START = (20.0, 20.0, -20.0)  # mm, the work zero of the test runs
 TO_START = "G91 G0 X20 Y20 Z-20"
-END = (20.0, 20.0, -15.0)  # mm, machine coordinates at the program's end: X0 Y0 Z5 from START
+END = (20.0, 20.0, -15.0)  # mm, machine coordinates of the program's end: X0 Y0 Z5 relative to START
 
 
 def await_true(what, look, longest=LONGEST):
-    """What look() gives as soon as that is true; an error after `longest` seconds."""
+    """The first true value of look(); an error after `longest` seconds."""
     end = time.monotonic() + longest
     while True:
         found = look()
@@ -44,7 +44,7 @@ def await_true(what, look, longest=LONGEST):
 
 
 class Report:
-    """A line <...> of Grbl."""
+    """A status report <...> of Grbl."""
 
     def __init__(self, line):
         fields = line.strip("<>").split("|")
@@ -55,7 +55,7 @@ class Report:
 
 
 class Reader:
-    """A client that reads what the controller says to bCNC and sends nothing."""
+    """A client that reads the controller's messages to bCNC and sends nothing."""
 
     def __init__(self, place):
         host, port = place.rsplit(":", 1)
@@ -74,7 +74,7 @@ class Reader:
         return len(self.lines)
 
     def await_report(self, what, good, since=None):
-        """The first report for which good() holds, of those that come from now on or after line `since`."""
+        """The first report for which good() holds, starting now or after line `since`."""
         since = self.now() if since is None else since
         return await_true(what, lambda: next(filter(good, self.reports(since)), None))
 
@@ -85,7 +85,7 @@ class Reader:
 
 
 class Bcnc:
-    """bCNC on a display of its own, connected to the server, with the program loaded."""
+    """bCNC on its own display, connected to the server, with the program loaded."""
 
     def __init__(self, place, program, home):
         self.home = pathlib.Path(home)
@@ -102,7 +102,7 @@ class Bcnc:
         os.close(write)
         with open(read) as number:
             display = number.readline().strip()
-        # Debian's python3, whose packages bCNC needs, comes first.
+        # Debian's python3 comes first, because bCNC needs its packages.
         self.process = subprocess.Popen(
             ["bCNC", "-D", program], stdout=self.log, stderr=subprocess.STDOUT, cwd=home,
             env={"PATH": "/usr/bin:/bin", "HOME": home, "DISPLAY": f":{display}", "LANG": "C.UTF-8"})
@@ -150,7 +150,7 @@ def at(place):
 
 
 def set_zero(bcnc, reader):
-    """Goes to START and makes it the work zero."""
+    """Moves to START and sets the work zero there."""
     since = reader.now()
     bcnc.do(TO_START)
     reader.await_report("the jog's end", at(START), since)
@@ -161,7 +161,7 @@ def set_zero(bcnc, reader):
 
 
 def begin_job(bcnc, reader):
-    """Starts the job and returns in its first cut."""
+    """Starts the job and returns during its first cut."""
     since = reader.now()
     bcnc.do("RUN")
     cutting = lambda report: report.state == "Run" and report.place[0] > START[0] + 2
@@ -173,8 +173,8 @@ def pause_and_resume(bcnc, reader):
     bcnc.do("PAUSE")
     begun = reader.await_report("the hold", lambda report: report.state.startswith("Hold"), since)
     held = reader.await_report("the hold's end", lambda report: report.state == "Hold:0", since)
-    # The ramp takes 0.05 mm at 10 mm/s, and a report is some milliseconds old. A hold that waits for its block's end or
-    # for an empty queue is further away.
+    # The ramp takes 0.05 mm at 10 mm/s, and a report is some milliseconds old. A hold that waited for its block's end
+    # or for an empty queue would end further away.
     check(math.dist(begun.place, held.place) < 1, f"the hold did not act at once: {begun.line}, {held.line}")
     check(held.place not in (START, END), f"the hold came after the job: {held.line}")
     since = reader.now()
@@ -187,8 +187,8 @@ def pause_and_resume(bcnc, reader):
 
 
 def await_purge(bcnc, reader, since, resets=1):
-    """bCNC's end of a job: a hold and a reset. Behind it bCNC queues G43.1 and $G; when the banner comes first, bCNC
-    0.9.14 empties that queue by itself, so they are sent here once more."""
+    """bCNC ends a job with a hold and a reset. Afterwards it queues G43.1 and $G, but if the banner comes first, bCNC
+    0.9.14 empties that queue, so the test sends them again."""
     banner = since
     for _ in range(resets):
         banner = reader.await_line(r"Grbl 1\.1h", banner) + 1
@@ -223,7 +223,7 @@ def stop_job(bcnc, reader):
     begin_job(bcnc, reader)
     override(bcnc, reader)
     bcnc.do("STOP")
-    after = await_purge(bcnc, reader, since, resets=2)  # the second at the job's end, which is now
+    after = await_purge(bcnc, reader, since, resets=2)  # the second reset belongs to the end of the job
     check(after.state == "Idle" and after.place not in (START, END), f"not stopped in the job: {after.line}")
     since = reader.now()
     bcnc.do("G90 G0 X0 Y0 Z5")
@@ -231,7 +231,7 @@ def stop_job(bcnc, reader):
 
 
 def recover(bcnc, reader):
-    """Beyond a soft limit, then Reset and Unlock."""
+    """A move beyond a soft limit, then Reset and Unlock."""
     since = reader.now()
     bcnc.do("G90 G1 X-100 F3000")
     reader.await_line("ALARM:2", since)
@@ -243,7 +243,7 @@ def recover(bcnc, reader):
 
 
 def walk(bcnc, reader):
-    """The steps of docs/user/bcnc.md at a machine with switches."""
+    """The steps of docs/user/bcnc.md on a machine with switches."""
     check(bcnc.state()["state"] == "Alarm", f"before homing: {bcnc.state()['state']}")
     since = reader.now()
     bcnc.do("HOME")
@@ -256,13 +256,13 @@ def walk(bcnc, reader):
 
 
 def job(bcnc, reader):
-    """A job alone, whose steps are judged: homing's depend on when the host sees an edge."""
+    """Only a job, because its steps are judged: those of homing depend on the time at which the host sees an edge."""
     set_zero(bcnc, reader)
     run_job(bcnc, reader)
 
 
 def with_bcnc(name, trammel, options, program, steps):
-    """Runs steps(bcnc, reader); the order of the card's steps, or None when something was wrong."""
+    """Runs steps(bcnc, reader); returns the order of the card's steps, or None after an error."""
     begun = time.monotonic()
     server = Server(trammel, "--listen", "127.0.0.1:0", *options)
     failure, reader, made, said = None, None, None, ""
@@ -292,8 +292,8 @@ def main():
     for needed in ("bCNC", "Xvfb"):
         if not shutil.which(needed, path="/usr/bin:/bin"):
             sys.exit(f"error: {needed} is missing: scripts/test --long senders installs it (Debian's bcnc and xvfb)")
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that the part's end leaves no process behind
-    # Slower, so that a request finds the job under way on a loaded machine, too.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that a time-out leaves no process running
+    # A slower program, so that a request reaches the running job on a loaded machine, too.
     text = pathlib.Path(program).read_text().replace("F3000", "F600")
     with tempfile.TemporaryDirectory() as folder:
         slow = pathlib.Path(folder) / "job.gcode"

@@ -1,6 +1,6 @@
-// cncjs' server (npm) sends a program to `trammel grbl` over a pseudo-terminal; a client of its own, as its page is one,
-// opens the port, loads the program, runs it, holds it once and goes on. The card's path must be that of
-// `trammel run`, and the machine must stand at the end.
+// cncjs' server (npm) sends a program to `trammel grbl` over a pseudo-terminal. The test is a client of that server,
+// like its page: it opens the port, loads the program, runs it, holds it once and resumes. The card's path must be that
+// of `trammel run`, and the machine must come to rest at the program's end.
 //   node cncjs_server.js NODE_MODULES TRAMMEL PROGRAM
 'use strict';
 
@@ -44,7 +44,7 @@ function end(child) {
   });
 }
 
-// "STEPS ORDER", as the card's server says them at its end.
+// "STEPS ORDER", as the card's server prints them at its end.
 function pathOf(said) {
   const found = /path: (\d+) steps.*of axes and directions ([0-9a-f]{16})/.exec(said);
   return found ? `${found[1]} ${found[2]}` : said;

@@ -1,5 +1,5 @@
-// Runs the test suites of cncjs' Grbl client (a folder of the shared judges, written elsewhere) against `trammel grbl`,
-// each against a server of its own, all at once: they wait most of the time.
+// Runs the third-party test suites of cncjs' Grbl client (a folder of the shared judges) against `trammel grbl`. Each
+// suite has its own server; all run at once, because they mostly wait.
 //   node cncjs_suites.js FOLDER TRAMMEL
 'use strict';
 
@@ -10,10 +10,10 @@ const path = require('path');
 const SUITES = ['client', 'motion', 'coordinate-system', 'jog', 'probe', 'settings', 'coolant', 'refresh-rate',
   'wco-override', 'streaming'];
 
-// What a suite wants and Grbl 1.1h does not do: its report in Idle has a speed of 0, not the last F.
+// Failures that Grbl 1.1h has, too: a suite expects the last F in a report in Idle, but the speed there is 0.
 const ELSEWHERE = { motion: ['Position or feed rate mismatch'] };
 
-// The suites colour their text by a package that is not needed for it.
+// The suites colour their text with a package; this stub replaces it.
 const load = Module._load;
 const plain = new Proxy((text) => text, { get: () => plain });
 Module._load = (name, ...rest) => (name === 'chalk' ? plain : load(name, ...rest));
@@ -30,8 +30,8 @@ function start() {
   });
 }
 
-// The suites look 100 or 150 ms after what they have sent; on a loaded machine an answer comes later. Here they look when
-// it has come: it ends with ok, error or an alarm, a report with '>'.
+// The suites read the answer 100 or 150 ms after sending, but on a loaded machine it comes later. This client waits for
+// the complete answer: it ends with ok, error or an alarm, and a report with '>'.
 function wait(client, pattern, text) {
   client.buffer = '';
   client.sendRaw(text);
@@ -56,7 +56,7 @@ async function run(suite) {
   try {
     await client.connect();
     await client.delay(300);
-    // The first report behind a reset has WCO, where the suites look for what comes with Ov.
+    // The first report after a reset has WCO; the suites expect one with Ov.
     for (let n = 0; n < 1; ++n) await client.sendRealtime('?');
     await require(path.join(folder, `${suite}-tests`))(client);
     await client.waitForIdle(60000);

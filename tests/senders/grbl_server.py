@@ -1,11 +1,11 @@
-"""`trammel grbl` for the senders of these tests, and the path that its card made."""
+"""`trammel grbl` for the senders of these tests, and the path of its card."""
 import re
 import signal
 import subprocess
 import tempfile
 
 ORDER = re.compile(r"path: (\d+) steps.*of axes and directions ([0-9a-f]{16})")
-LONGEST = 120  # s, of a job that takes ten
+LONGEST = 120  # s; a job takes about ten
 
 
 class Server:
@@ -22,7 +22,7 @@ class Server:
         self.place = found.group(1)
 
     def end(self):
-        """Ends it; what it said on standard error."""
+        """Ends the server; returns its standard error."""
         self.process.send_signal(signal.SIGTERM)
         self.process.wait(LONGEST)
         self.err.seek(0)
@@ -30,13 +30,13 @@ class Server:
 
 
 def order_of(text):
-    """Number of steps and identity of their order, or the whole text where it has none."""
+    """Number of steps and identity of their order, or the whole text if it has none."""
     found = ORDER.search(text)
     return found.groups() if found else text
 
 
 def by_run(trammel, program):
-    """What `trammel run` makes of the program (a file's name) on a card of its own."""
+    """The result of `trammel run` for the program (a file name) on a separate card."""
     with tempfile.TemporaryFile("w+") as err:
         served = subprocess.Popen([trammel, "serve", "--engine", "model", "--fast", "--once"], stdout=subprocess.PIPE,
                                   stderr=err, text=True)

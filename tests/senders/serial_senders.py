@@ -4,8 +4,8 @@ pseudo-terminal: the steps that the card makes must be those of `trammel run`, i
 
     serial_senders.py TRAMMEL PROGRAM NODE_MODULES [SENDER ...]
 
-NODE_MODULES is the folder that gcnc is installed in. Exit status 0 when all is as it must be, 1 when it is not, 77 when a
-sender is not installed.
+NODE_MODULES is the folder that gcnc is installed in. Exit status 0 when everything is correct, 1 when it is not, 77
+when a sender is not installed.
 """
 import pathlib
 import shutil
@@ -27,13 +27,13 @@ def pygrbl_streamer(port, program):
 
 
 def simple_gcode_sender(port, program):
-    # A program of its own, which ends when it has sent all.
+    # A separate program, which ends when it has sent everything.
     sender = pathlib.Path(sys.executable).parent / "sgs"
     subprocess.run([sender, program, port], check=True, timeout=LONGEST, stdout=subprocess.DEVNULL)
 
 
 def gcnc(port, program):
-    # A program of its own; it keeps a file of its progress in the folder where it runs.
+    # A separate program; it keeps a file of its progress in its working folder.
     command = pathlib.Path(sys.argv[3]).resolve() / "gcnc/lib/cli/index.js"
     if not command.exists() or not shutil.which("node"):
         raise ImportError(f"no node in PATH or no {command}")

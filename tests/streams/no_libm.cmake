@@ -1,5 +1,5 @@
-# cmake -D NM=nm -D "LIBRARIES=..." -P: the libraries call no function of libm whose result depends on the machine. (Rounding,
-# remainders, square roots and powers of two are exact everywhere.)
+# cmake -D NM=nm -D "LIBRARIES=..." -P: checks that the libraries call no function of libm whose result depends on the
+# machine. (Rounding, remainders, square roots and powers of two are exact everywhere.)
 cmake_minimum_required(VERSION 3.25)
 set(functions "sincos|a?sinh?|a?cosh?|a?tanh?|atan2|exp|exp2|exp10|expm1|log|log2|log10|log1p|pow|hypot|cbrt|erfc?|[lt]gamma|fma")
 foreach(library IN LISTS LIBRARIES)

@@ -1,6 +1,6 @@
-# cmake -D "FIRST=command;argument;..." -D "SECOND=..." -D "ARGUMENTS=..." [-D "CONTROL=..."] -P: both commands, given the
-# arguments, print the same and at least one line. CONTROL: arguments with which they must print different things, else
-# the two are no different hosts and nothing is compared.
+# cmake -D "FIRST=command;argument;..." -D "SECOND=..." -D "ARGUMENTS=..." [-D "CONTROL=..."] -P: both commands, with
+# the arguments, must print the same text of at least one line. CONTROL: arguments for which they must print different
+# texts; otherwise the hosts do not differ and nothing is compared.
 cmake_minimum_required(VERSION 3.25)
 
 function(output_of result)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""LinuxCNC's user interface in the tests, as far as the HAL component's and the planner module's are the same: commands,
-status, messages, and the end, which writes result.json. The tests copy it beside their own."""
+"""The part of LinuxCNC's user interface that the tests of the HAL component and of the planner module share: commands,
+status, messages, and the end, which writes result.json. The tests copy it next to their own part."""
 
 import json
 import pathlib
@@ -52,7 +52,7 @@ def mdi(text, seconds=60):
 
 
 def start_program(text=None):
-    """`text`, or what program.ngc has."""
+    """Starts the program `text`, or the existing program.ngc."""
     program = pathlib.Path("program.ngc").resolve()
     if text is not None:
         program.write_text(text)
@@ -64,11 +64,11 @@ def start_program(text=None):
 
 
 def play(scenarios, begin, measures):
-    """The scenario that the file `scenario` names, between `begin` and `measures`."""
+    """Plays the scenario that the file `scenario` names, between `begin` and `measures`."""
     try:
         begin()
         scenarios[pathlib.Path("scenario").read_text().strip()]()
-    except Exception as error:  # the test tells it
+    except Exception as error:  # the test reports it
         result["failure"] = repr(error)
     poll()
     measures()

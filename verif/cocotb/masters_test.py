@@ -1,5 +1,5 @@
-"""The card driven by bus masters that were written elsewhere, by people who had the buses' specifications and not this
-project: cocotbext-axi's AXI4-Lite master and cocotbext-wishbone's pipelined one, alone and both at once."""
+"""Tests of the card with third-party bus masters, whose authors knew the buses' specifications but not this project:
+cocotbext-axi's AXI4-Lite master and cocotbext-wishbone's pipelined one, each alone and both at once."""
 import itertools
 import os
 import random
@@ -38,7 +38,7 @@ class Axi:
         return answer.resp == AxiResp.OKAY
 
     def stumble(self, dice):
-        """Every channel pauses at random: idle clocks between accesses, answers that are not taken."""
+        """Makes every channel pause at random: idle clocks between accesses, answers that are not accepted at once."""
         write, read = self.master.write_if, self.master.read_if
         for channel in (write.aw_channel, write.w_channel, write.b_channel, read.ar_channel, read.r_channel):
             channel.set_pause_generator(dice.random() < 0.4 for _ in itertools.count())
@@ -91,7 +91,7 @@ async def refusals(bus):
 
 
 async def settings_at_random(bus, axes, dice, count, tally):
-    """Writes and reads of settings; every read is what this master wrote last."""
+    """Writes and reads settings; every read must return the value that this master wrote last."""
     places = [address(name, axis) for name in ("STEP_LENGTH", "STEP_SPACE", "DIR_SETUP", "DIR_HOLD") for axis in axes]
     held = {}
     for _ in range(count):
@@ -128,7 +128,7 @@ class Steps:
 
 
 async def line(bus, dut, pulses, clocks):
-    """A line in one burst of writes; gives back the positions that the card counts."""
+    """Sends a line in one burst of writes; returns the positions that the card counts."""
     for axis in reversed(range(AXES)):
         frequency = ((abs(pulses[axis]) << 40) * 2 + clocks) // (2 * clocks)
         for name, value in (("FREQUENCY_LO", frequency & 0xFFFFFFFF), ("FREQUENCY_HI", frequency >> 32),
@@ -170,7 +170,7 @@ async def both_at_once_and_stumbling(dut):
     dice = random.Random(SEED)
     axi.stumble(dice)
     tally = []
-    # Two tasks on the AXI master, so that reads and writes are under way together; each master and task its own axes.
+    # Two tasks on the AXI master, so that reads and writes overlap; each master and task has its own axes.
     tasks = [cocotb.start_soon(settings_at_random(bus, axes, dice, count, tally))
              for bus, axes, count in ((axi, [0], 600), (axi, [1], 600), (wishbone, [2, 3], 900))]
     await Combine(*tasks)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs masters_test.py on the card in Icarus, then on cards with a seeded bug each, which it must find. Exit status 77:
-cocotb is not installed."""
+"""Runs masters_test.py on the card in Icarus, then on cards with one seeded bug each, which it must find. Exit status
+77: cocotb is not installed."""
 import argparse
 import contextlib
 import os
@@ -21,7 +21,7 @@ except ImportError:
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 
-# (name, file, what stands there once, what stands there instead)
+# (name, file, original text, which occurs once, text of the bug)
 SEEDED = [
     ("axi_refusal_untold", "rtl/host/axi4_lite_port.sv", "write_error_q <= answer_i[register_answer_pkg::ERROR];", "write_error_q <= 1'b0;"),
     ("axi_answer_dropped", "rtl/host/axi4_lite_port.sv", "if (rready_i) rvalid_o <= 1'b0;", "rvalid_o <= 1'b0;"),
@@ -67,7 +67,7 @@ def main():
     parser.add_argument("--no-seeded-bugs", action="store_true", help="the card alone")
     arguments = parser.parse_args()
     folder = arguments.folder.resolve()
-    # The simulator looks there for this interpreter and its packages.
+    # The simulator finds this interpreter and its packages through these variables.
     os.environ["PATH"] = f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}"
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "card").mkdir(parents=True)

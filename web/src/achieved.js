@@ -1,11 +1,11 @@
-// The speed along the path from the intervals between the pulses at the pins: constant between two pulses of an axis;
-// where an interval is more than four times the one before or behind it, the axis stood still in its middle.
+// The speed along the path from the intervals between the pulses at the pins: constant between two pulses of an axis.
+// If an interval is more than four times the previous or the next one, the axis stood still in its middle.
 import { lastAtMost } from './run.js'
 
 const kStoodStill = 4
 const kBlock = 64
 
-// Pulses a second of one motor times `perStep`, negative backwards, from each of `times` on.
+// Speed of one motor, pulses per second times `perStep`, negative for backward motion, from each of `times` on.
 function motorSpeeds(steps, perStep) {
   const { pins, positions, count } = steps
   const times = new Float64Array(3 * count + 1), speeds = new Float32Array(3 * count + 1)
@@ -37,7 +37,7 @@ function motorSpeeds(steps, perStep) {
   return { times: times.subarray(0, n), speeds: speeds.subarray(0, n) }
 }
 
-// The sum of such speeds.
+// The sum of the speeds of several motors.
 function sumOf(parts) {
   if (parts.length === 1) return parts[0]
   const capacity = parts.reduce((sum, { times }) => sum + times.length, 0)
@@ -49,7 +49,8 @@ function sumOf(parts) {
   return { times: times.subarray(0, count), speeds: speeds.subarray(0, count) }
 }
 
-// Calls `put` with the speeds in force at each time at which one of them changes, the time, and its number; how many.
+// Calls `put` for each time at which a speed changes, with all speeds, the time, and its number; returns the number of
+// times.
 function mergeSpeeds(parts, put) {
   const next = parts.map(() => 0), now = new Float64Array(parts.length)
   for (let n = 0; ; ++n) {
@@ -76,7 +77,7 @@ export class Achieved {
     this.merge(inSpace.map(alone), beside.map(alone))
     this.summarise()
   }
-  // Along X Y Z; along the other axes where none of these moves.
+  // Along X Y Z; if none of these moves, along the other axes.
   merge(space, beside) {
     const all = [...space, ...beside]
     const capacity = all.reduce((sum, one) => sum + one.times.length, 0)
@@ -91,7 +92,7 @@ export class Achieved {
     this.times = times.subarray(0, n)
     this.speeds = speeds.subarray(0, n)
   }
-  // Least, most and sum over time of each kBlock values.
+  // Minimum, maximum and sum over time of each kBlock values.
   summarise() {
     const blocks = Math.ceil(this.times.length / kBlock)
     this.least = new Float32Array(blocks)
@@ -120,7 +121,7 @@ export class Achieved {
     const i = lastAtMost(times, cycle)
     return i < 0 ? 0 : speeds[i]
   }
-  // [mean, least, most] between two card clocks.
+  // [mean, minimum, maximum] between two card clocks.
   between(from, to) {
     const { times, speeds } = this
     const count = times.length

@@ -1,4 +1,4 @@
-// What is written over the path: numbers at the grid, start and end, the scale, and where the axes point.
+// Labels over the path: numbers at the grid, start and end, the scale, and the directions of the axes.
 import { Vector3 } from 'three'
 import { Labels } from './labels.js'
 import { axisColour, colour } from './theme.js'
@@ -6,7 +6,7 @@ import { decimals, fixed, niceStep } from './format.js'
 
 const kLine = 13     // height of a label, pixels
 const kBeside = 9    // from the middle of a mark to its label
-const kAxes = [42, 40]  // where the axes meet: from the left, from the bottom
+const kAxes = [42, 40]  // origin of the axes symbol: from the left, from the bottom
 
 export class Annotations {
   constructor(view) {
@@ -41,7 +41,7 @@ export class Annotations {
       this.labels.take([left - own.left, top - own.top, right - own.left, bottom - own.top])
     }
   }
-  // The box of a text whose middle is there.
+  // The box of a text with this centre.
   boxOf(text, x, y) {
     const half = this.context.measureText(text).width / 2
     return [x - half - 1, y - kLine / 2, x + half + 1, y + kLine / 2]
@@ -50,12 +50,12 @@ export class Annotations {
     this.context.fillStyle = colour(ink)
     this.context.fillText(text, box[0] + 1, y)
   }
-  // Where a place of the path (mm from the run's middle) is on the canvas.
+  // The place on the canvas of a point of the path (mm from the run's middle).
   at(x, y, z) {
     const p = new Vector3(x, y, z).project(this.view.camera)
     return [(p.x + 1) / 2 * this.width, (1 - p.y) / 2 * this.height]
   }
-  // From the last one on: the first that is written has the unit.
+  // Starts with the last one: the first label written has the unit.
   writeNumbers(numbers) {
     let unit = ' mm'
     for (const { text, x, y } of numbers) {
@@ -65,7 +65,7 @@ export class Annotations {
       unit = ''
     }
   }
-  // Texts with their places, the last of each side first.
+  // Texts with their places, beginning with the last one of each side.
   numbersOfGrid() {
     const { step: gridStep, x, y, z } = this.view.grid.ruled
     const { centre } = this.view.run
@@ -87,7 +87,7 @@ export class Annotations {
       }
       sides.push(numbers)
     }
-    // Away from the grid; below it where it is seen from its edge.
+    // Away from the grid; below it if the grid is seen edge-on.
     const towards = (from, to) => {
       const d = [from[0] - to[0], from[1] - to[1]], length = Math.hypot(...d)
       return length < 1 ? [0, 12] : [d[0] / length * 15, d[1] / length * 12]
@@ -98,7 +98,7 @@ export class Annotations {
     const xMiddle = (x.low + x.high) / 2, yMiddle = (y.low + y.high) / 2
     if (size[0] > 0) rule(x, xs, towards(xs(xMiddle), at(xMiddle, y.high, ground)))
     if (size[1] > 0) rule(y, ys, towards(ys(yMiddle), at(x.high, yMiddle, ground)))
-    // Heights, where they matter: at the corner that stands to the left.
+    // Heights, if they matter: at the leftmost corner.
     if (size[2] < 0.25 * Math.max(size[0], size[1])) return sides
     const corners = size[0] + size[1] > 0 ? [[x.low, y.low], [x.low, y.high], [x.high, y.low], [x.high, y.high]] : [centre]
     const left = corners.reduce((p, q) => at(q[0], q[1], ground)[0] < at(p[0], p[1], ground)[0] ? q : p)
@@ -108,7 +108,7 @@ export class Annotations {
     rule({ low, count, high: low + count * step }, (v) => at(left[0], left[1], v), [-26, 0], step)
     return sides
   }
-  // Start and end, labelled where they leave the numbers free, if there is such a place.
+  // Labels of start and end, at a place that covers no numbers, if there is one.
   markEnds(numbers) {
     const { run } = this.view
     if (run.paths.count === 0) return
@@ -138,7 +138,7 @@ export class Annotations {
     context.fill()
     context.stroke()
   }
-  // With a rim in the colour of the ground, to be read on lines.
+  // With a rim in the background colour, to be readable over lines.
   writeOnPanel(text, box, ink = colour('ink'), y = (box[1] + box[3]) / 2) {
     this.context.lineWidth = 3
     this.context.strokeStyle = colour('panel')

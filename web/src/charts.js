@@ -1,4 +1,4 @@
-// The charts over time: one window of time for all, drawn again from the run whenever it changes.
+// The charts over time: all share one window of time, and are redrawn from the run when it changes.
 import uPlot from 'uplot'
 import { make } from './dom.js'
 import { axisColour, colour } from './theme.js'
@@ -7,7 +7,7 @@ import { decimals, fixed, number, ticks } from './format.js'
 
 const kFont = '11px system-ui, "Noto Sans", "DejaVu Sans", sans-serif'
 
-// Rows of charts: what they are called, their unit, their lines.
+// Rows of charts: name, unit, lines.
 export function rowsOf(run) {
   const axes = run.axes.map((axis, a) => ({ axis, a })).filter(({ a }) => moves(run, a))
   const units = run.axes.some((axis) => 'ABC'.includes(axis.letter)) ? 'mm or °' : 'mm'
@@ -39,7 +39,7 @@ export function rowsOf(run) {
     ...apartRow(run),
   ]
 }
-// Of a machine behind the pins: from the start where a carriage has lost its place.
+// Only with a machine behind the pins; visible from the start if a carriage has lost its place.
 function apartRow(run) {
   const { apart, parted } = run.surroundings
   const lines = apart.map((axis, n) => ({ axis, n })).filter(({ axis }) => axis.times.length > 0)
@@ -70,7 +70,7 @@ export class Chart {
     if (row.id === 'jerk' && !row.limits.length) this.element.querySelector('.label').append(make('div', {}, make('em', {}, 'no limit given')))
   }
   colourOf(line) { return line.axis ? axisColour(line.axis) : colour(line.colour) }
-  // Again from the start: the width or the colours have changed.
+  // Rebuilds everything, because the width or the colours have changed.
   build(width) {
     this.plot?.destroy()
     const { row } = this
@@ -115,12 +115,12 @@ export class Chart {
       const most = Math.max(high, row.room ?? 0)
       return [0, most > 0 ? most * 1.12 : 1]
     }
-    // Both sides of zero alike; the limits show where the motion comes near to them.
+    // The range is symmetric around zero; a limit is shown if the motion comes near it.
     let most = Math.max(Math.abs(low), Math.abs(high))
     for (const limit of row.limits ?? []) if (limit > most && limit < 1.6 * most) most = limit
     return most > 0 ? [-1.15 * most, 1.15 * most] : [-1, 1]
   }
-  // Limits and pauses, above the grid and under the lines.
+  // Limits and pauses, above the grid and below the lines.
   under() {
     const { plot, row, run } = this
     const { ctx, bbox } = plot

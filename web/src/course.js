@@ -1,15 +1,15 @@
-// The commanded path as corners of lines, with what they are coloured by. No document here.
+// The commanded path as corners of lines, with the values for their colours. Does not use the document.
 import { kArc, kPause, kSpaceArc } from './decode.js'
 
 const kMaxCorners = 300000  // corners
 
-// Pairs of corners (x y z, mm from the run's middle), in two lists: with a feed, and rapids.
+// Pairs of corners (x y z, mm from the run's middle), in two lists: feed moves and rapids.
 export function courseOf(run) {
   const { motion, paths, centre } = run
   const perStretch = Math.max(1, Math.min(16, Math.floor(kMaxCorners / Math.max(1, motion.count))))
   const feed = { points: [], speed: [], load: [], deviation: [], path: [] }
   const rapid = { points: [], path: [] }
-  // A long program's lines are shorter than a pixel: corners nearer to the one before than this are left out.
+  // Lines of a long program are shorter than a pixel, so corners closer than this to the previous one are left out.
   const least = motion.count > kMaxCorners ? extentOf(run) / 4000 : 0
   let last = null, lastPath = -1
   for (let s = 0; s < motion.count; ++s) {
@@ -46,13 +46,13 @@ export function courseOf(run) {
   return { feed, rapid }
 }
 
-// The largest side of the box around all points, mm.
+// The largest side of the bounding box of all points, mm.
 function extentOf(run) {
   const { low, high } = boxOf(run, false)
   return Math.max(...high.map((x, i) => x - low[i]), 1e-6)
 }
 
-// The box around the commanded path, mm from the run's middle; arcs by eight places of theirs.
+// The bounding box of the commanded path, mm from the run's middle; an arc is approximated by eight points.
 export function boxOf(run, withArcs = true) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
   const take = (at) => at.forEach((x, i) => {

@@ -1,4 +1,4 @@
-// The report's streams: bytes as the writer (host/report) has put them. Runs in a browser and in Node.
+// Decodes the report's streams, in the format of the writer (host/report). Runs in a browser and in Node.
 
 export class Bytes {
   constructor(data) {
@@ -11,7 +11,7 @@ export class Bytes {
     const data = this.data
     let byte = data[this.at++]
     let value = byte & 0x7f
-    // Beyond 2^31 bits would be lost: numbers have 53 of them.
+    // Bit operations would lose bits beyond 2^31; numbers have 53 bits.
     for (let scale = 128; byte & 0x80; scale *= 128) {
       byte = data[this.at++]
       value += (byte & 0x7f) * scale
@@ -26,15 +26,14 @@ export class Bytes {
   f64() { const value = this.view.getFloat64(this.at, true); this.at += 8; return value }
 }
 
-// How many varints there are: each has one byte without the highest bit.
+// The number of varints: each has exactly one byte without the highest bit.
 export function countVarints(data) {
   let count = 0
   for (let i = 0; i < data.length; ++i) count += data[i] < 0x80 ? 1 : 0
   return count
 }
 
-// The steps of one motor: clocks at which they came to the shaper, at which they were at the pin, and positions behind
-// them (pulses).
+// The steps of one motor: clocks at which they reached the shaper and the pin, and positions after them (pulses).
 export function decodeSteps(stepData, delayData, start) {
   const count = countVarints(stepData)
   const cycles = new Float64Array(count)
@@ -116,8 +115,8 @@ export function decodePaths(data, axes, start) {
   }
 }
 
-// Stretches of one path under one feed piece: where they begin on the motion clock, and rate, acceleration and jerk
-// there in ticks and clocks.
+// Stretches of one path with one feed piece: their beginning on the motion clock, and rate, acceleration and jerk
+// there, in ticks and clocks.
 export function decodeMotion(data) {
   const bytes = new Bytes(data)
   const paths = [], begins = [], rates = [], accelerations = [], jerks = []
@@ -138,7 +137,7 @@ export function decodeMotion(data) {
   }
 }
 
-// Points of motion clock and card clock; `begin` of a stretch's first point: where the motion clock stood before it.
+// Points of motion clock and card clock; `begin` of a stretch's first point is the value of the motion clock before it.
 export function decodeTimes(data) {
   const bytes = new Bytes(data)
   const points = []

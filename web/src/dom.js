@@ -1,4 +1,4 @@
-// Elements by hand: what comes from a program is text, never markup.
+// Makes elements directly: text of a program stays text and never becomes markup.
 export function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag)
   for (const [name, value] of Object.entries(attributes)) {
@@ -9,13 +9,13 @@ export function make(tag, attributes = {}, ...children) {
   element.append(...children.filter((child) => child != null))
   return element
 }
-// A canvas of this size on the page, emptied, in the screen's own pixels.
+// Clears a canvas and sets its size on the page, in the screen's own pixels.
 export function sizeCanvas(canvas, width, height) {
   const ratio = window.devicePixelRatio || 1
   Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) })
   Object.assign(canvas.style, { width: `${width}px`, height: `${height}px` })
 }
-// To draw on it in the page's pixels.
+// The context for drawing in the page's pixels.
 export function contextOf(canvas, width) {
   const context = canvas.getContext('2d')
   const ratio = canvas.width / width

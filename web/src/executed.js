@@ -1,11 +1,11 @@
-// The executed pulses: over the whole run a line thinned out, close up each of those in view.
+// The executed pulses: a thinned-out line for the whole run; close up, each pulse in view.
 import { BufferAttribute, BufferGeometry, CanvasTexture, Color, Line, LineBasicMaterial, LineSegments, Points, PointsMaterial } from 'three'
 import { colour, ramp } from './theme.js'
 import { lastAtMost } from './run.js'
 
-const kChunk = 512      // executed places with a box of their own
-const kDetail = 200000  // executed places at most in full detail
-const kThin = 60000     // and over the whole run
+const kChunk = 512      // executed places per bounding box
+const kDetail = 200000  // most executed places in full detail
+const kThin = 60000     // most executed places for the whole run
 
 // A round dot.
 function disc() {
@@ -20,7 +20,7 @@ function disc() {
 const geometryOf = (places) => new BufferGeometry().setAttribute('position', new BufferAttribute(places, 3))
 
 export class Executed {
-  // Extent: the largest side of the path; pulse: that of the finest axis (mm).
+  // Extent: the largest side of the path; pulse: one pulse of the finest axis (mm).
   constructor(run, extent, pulse) {
     this.run = run
     this.pulse = pulse
@@ -33,7 +33,7 @@ export class Executed {
     for (const object of this.objects()) {
       object.material.depthTest = object.material.depthWrite = false
       object.frustumCulled = false
-      // Under the commanded lines over the whole run, above them pulse by pulse.
+      // For the whole run below the commanded lines; pulse by pulse above them.
       object.renderOrder = object === this.thin ? -1 : 2
     }
   }
@@ -46,15 +46,16 @@ export class Executed {
     this.shown = on
     this.hide(false)
   }
-  // For the time being, whatever is to be shown.
+  // Hides them temporarily, independent of the setting.
   hide(hidden) {
     this.detail.visible = this.dots.visible = this.shown && !hidden
     this.thin.visible = this.shown && !hidden && !this.count
   }
-  // What is in view, nearest in time to the clock where that is too much. The dots by their deviations, where a largest one is given.
+  // Shows the pulses in view, or, if there are too many, those nearest in time to the clock. Dots are coloured by
+  // deviation if a largest one is given.
   update(camera, cycle, mostDeviation) {
     const { places } = this.run.executed
-    const apart = camera.zoom * this.pulse  // pixels a pulse
+    const apart = camera.zoom * this.pulse  // pixels per pulse
     const ranges = apart < 0.8 ? [] : this.inView(camera, cycle)
     this.count = ranges.reduce((sum, [from, to]) => sum + to - from, 0)
     const points = new Float32Array(3 * this.count)
@@ -87,7 +88,7 @@ export class Executed {
     }
     return colours
   }
-  // Ranges of executed places whose boxes are in view, kDetail in all.
+  // Ranges of executed places whose boxes are in view, at most kDetail places in total.
   inView(camera, cycle) {
     const { count, times } = this.run.executed
     const { elements } = camera.matrixWorldInverse
@@ -111,7 +112,7 @@ export class Executed {
   }
 }
 
-// A box in the camera's right and up: its middle, and how far it reaches.
+// A box in the camera's right and up directions: its centre and half sizes.
 function seen(box, matrix) {
   let x = matrix[12], y = matrix[13], reachX = 0, reachY = 0
   for (let d = 0; d < 3; ++d) {
@@ -124,7 +125,7 @@ function seen(box, matrix) {
   return { x, y, reachX, reachY }
 }
 
-// Places each at least a distance from the one before; where that makes too many, twice the distance.
+// Places with at least a certain distance from the previous one; the distance doubles while there are too many.
 function thinned({ places, count }, extent) {
   for (let least = Math.max(extent, 1e-6) / 3000; ; least *= 2) {
     const kept = []
@@ -141,7 +142,7 @@ function thinned({ places, count }, extent) {
   }
 }
 
-// The least and the greatest place of each chunk.
+// The minimum and maximum corner of each chunk.
 function boxesOf({ places, count }) {
   const chunks = Math.ceil(count / kChunk)
   const boxes = new Float32Array(6 * chunks)

@@ -1,6 +1,6 @@
-// Numbers as people read them.
+// Formats numbers for people.
 
-// 1, 2 or 5 times a power of ten, the least that is not below x.
+// The smallest of 1, 2 or 5 times a power of ten that is not below x.
 export function niceStep(x) {
   const power = 10 ** Math.floor(Math.log10(x))
   for (const factor of [1, 2, 5, 10]) if (factor * power >= x * (1 - 1e-9)) return factor * power
@@ -9,7 +9,7 @@ export function niceStep(x) {
 export const decimals = (step) => Math.max(0, Math.min(12, -Math.floor(Math.log10(step) + 1e-9)))
 export const fixed = (x, digits) => (Object.is(x, -0) || Math.abs(x) < 0.5 * 10 ** -digits ? 0 : x).toFixed(digits)
 
-// Four digits or so, no exponent.
+// About four digits, without an exponent.
 export function number(x) {
   if (!Number.isFinite(x)) return '–'
   const size = Math.abs(x)
@@ -31,7 +31,7 @@ export function duration(seconds) {
   const rest = fixed(seconds - 60 * minutes, 1).padStart(4, '0')
   return hours ? `${hours}:${String(minutes % 60).padStart(2, '0')}:${rest} h` : `${minutes}:${rest} min`
 }
-// Ticks of a scale: each a multiple of a round step, about `count` of them.
+// About `count` ticks of a scale, each a multiple of a round step.
 export function ticks(from, to, count) {
   const step = niceStep((to - from) / count)
   const list = []

@@ -1,4 +1,4 @@
-// The grid on the ground below the path, and close up one of its own at the height of what is in view.
+// The grid on the ground below the path, and, close up, a second grid at the height of the part in view.
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from 'three'
 import { colour } from './theme.js'
 import { niceStep } from './format.js'
@@ -6,7 +6,7 @@ import { niceStep } from './format.js'
 const linesOf = (points) => new BufferGeometry().setAttribute('position', new BufferAttribute(Float32Array.from(points), 3))
 
 export class Grid {
-  // Size and box of the path and the finest axis's pulse, mm.
+  // Size and bounding box of the path, and one pulse of the finest axis, mm.
   constructor(run, size, box, pulse) {
     this.run = run
     this.pulse = pulse
@@ -48,13 +48,13 @@ export class Grid {
     }
     return linesOf(points)
   }
-  // Of the grid on the ground, as places in a row.
+  // Lines of the grid on the ground, as a flat list of places.
   corners() {
     const { x, y, z } = this.ruled
     const { centre } = this.run
     return [x.low, x.high].flatMap((px) => [y.low, y.high].flatMap((py) => [px - centre[0], py - centre[1], z]))
   }
-  // The one of the two that the camera sees well; close up single pulses, where they are wide apart.
+  // Shows the grid that the camera sees well; close up, its lines are single pulses if these are far enough apart.
   update(camera, target) {
     const { zoom } = camera
     const { centre } = this.run

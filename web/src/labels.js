@@ -1,4 +1,5 @@
-// Places for labels that must not cover one another: a label takes the first of its places that is free, and is left out where none is.
+// Places for labels that must not cover each other: a label takes the first free one of its places, or is left out if
+// there is none.
 
 export class Labels {
   constructor(width, height) {
@@ -7,7 +8,8 @@ export class Labels {
     this.taken = []  // boxes: left, top, right, bottom
   }
   take(box) { this.taken.push(box) }
-  // Takes one of the boxes: the first that is free and covers none of the others, else the first that is free; undefined where none is.
+  // Takes one of the boxes: the first free one that covers none of the others, else the first free one; undefined if
+  // none is free.
   place(boxes, others = []) {
     const free = boxes.filter((box) => this.within(box) && !meets(box, this.taken))
     const box = free.find((one) => !meets(one, others)) ?? free[0]

@@ -1,5 +1,5 @@
-// The card's inputs as a strip: a lane each, filled while it is active, an edge where it changes; and above them the
-// names of what has held or stopped the run.
+// The card's inputs as a strip: one lane per input, filled while it is active, with an edge at each change; above them,
+// the names of the causes that held or stopped the run.
 import { contextOf, make, sizeCanvas } from './dom.js'
 import { colour } from './theme.js'
 import { alpha } from './charts.js'
@@ -7,16 +7,16 @@ import { fixed } from './format.js'
 import { lastAtMost } from './run.js'
 import { activeAt, placeText } from './surroundings.js'
 
-const kLane = 16    // pixels, as a line of the label beside it
-const kTitle = 24   // above the first lane, as the title beside it: a line of names
-const kMore = 15    // and a second line, of a run with several
+const kLane = 16    // pixels, as a line of the label next to it
+const kTitle = 24   // above the first lane, as the title next to it: a line of names
+const kMore = 15    // a second line, if a run has several
 const kFont = '11px system-ui, "Noto Sans", "DejaVu Sans", sans-serif'
 
 export class Lanes {
   constructor(run) {
     this.run = run
     const { lanes } = run.surroundings
-    // Those that change; of a run in which none does all of them.
+    // The inputs that change; all inputs if none does.
     const moving = lanes.filter(({ times }) => times.length > 0)
     this.lanes = moving.length ? moving : lanes
     this.values = this.lanes.map(() => make('b'))
@@ -73,7 +73,7 @@ export class Lanes {
     }
     fill(this.width)
   }
-  // Each name beside its mark, and not over another; then as much more of it as there is room for.
+  // Puts each name next to its mark, not over another one, then extends it as far as there is room.
   drawMarks(context) {
     const { from, to, left, x } = this.view
     context.font = kFont
@@ -104,7 +104,7 @@ export class Lanes {
 
 export const markColour = (mark) => colour(mark.parting ? 'e' : 'cursor')
 
-// A line in a chart where something has held or stopped the run.
+// A line in a chart at each hold or stop of the run.
 export function drawMark(context, mark, at, top, height) {
   context.save()
   context.strokeStyle = markColour(mark)
@@ -117,7 +117,7 @@ export function drawMark(context, mark, at, top, height) {
   context.restore()
 }
 
-// Little to be said of it, and more; kSizes of them.
+// Short and longer texts for it; kSizes texts.
 const kSizes = 4
 function textsOf(run, mark) {
   const { name, reaction, cycle, line, place } = mark

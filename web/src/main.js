@@ -13,7 +13,7 @@ import { byId, contextOf, make, sizeCanvas } from './dom.js'
 import { colour, isDark, rampCss, setTheme } from './theme.js'
 import { decimals, duration, fixed, grouped, millimetres, number, ticks } from './format.js'
 
-const kScale = 52     // pixels of the numbers left of the charts
+const kScale = 52     // pixels for the numbers to the left of the charts
 const kLeast = 24     // clocks in the closest view
 
 class Page {
@@ -122,7 +122,7 @@ class Page {
       rows.append(chart.element)
       chart.element.hidden = !chart.row.shown
     }
-    // Below the speed, so that they stand beside each other.
+    // Below the speed, for comparison.
     this.charts[0].element.after(this.lanes.element)
     this.lanes.element.hidden = !this.run.surroundings.busy
     rows.append(this.scope.element)
@@ -178,7 +178,7 @@ class Page {
     this.drawAxis(window)
     this.placeCursor()
   }
-  // One axis of time for all, at the foot.
+  // One time axis for all charts, at the bottom.
   drawAxis([from, to]) {
     const height = 24, width = this.width
     sizeCanvas(this.axis, width, height)
@@ -219,7 +219,7 @@ class Page {
     this.setWindow(at - (at - from) * factor, at + (to - at) * factor)
   }
   closeTime() {
-    // A pulse or two in view, where they are not too far.
+    // Keeps a pulse or two in view, if they are not too far away.
     const { times, count } = this.run.executed
     const next = lastAtMost(times, this.cycle) + 1
     const way = Math.min(next < count ? times[next] - this.cycle : Infinity, next > 0 ? this.cycle - times[next - 1] : Infinity)
@@ -261,7 +261,7 @@ class Page {
   goToLine(line) {
     this.setCycle(this.run.beginOfLine(line), true)
   }
-  // The next pulse of any axis, or the one before.
+  // The next pulse of any axis, or the previous one.
   stepPulse(by) {
     const { times, count } = this.run.executed
     if (!count) return
@@ -397,7 +397,7 @@ async function main() {
     const facts = JSON.parse(byId('facts').textContent)
     const page = new Page(new Run(streams, facts))
     byId('loading').remove()
-    // For tests, and for who looks at a run by hand in the browser's console.
+    // For tests, and for inspecting a run in the browser's console.
     window.trammel = page
     requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = 'true' }))
   } catch (error) {

@@ -1,6 +1,7 @@
-// A path with few lines, to be drawn while the view moves. No document here.
+// Reduces a path to few lines, to be drawn while the view moves. Does not use the document.
 
-// Pairs of corners (places in a list of x y z), `most` lines or few more: each joins neighbours that follow on one another.
+// Pairs of corners (indices into a list of x y z), about `most` lines at most: each line joins several consecutive
+// ones.
 export function outline(points, most) {
   const lines = points.length / 6
   const run = Math.max(1, Math.ceil(lines / most))

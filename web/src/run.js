@@ -1,9 +1,10 @@
-// A run as the page knows it: commanded motion and executed steps on one time axis, card clocks. No document here.
+// The page's data of a run: commanded motion and executed steps on one time axis, in card clocks. Does not use the
+// document.
 import { Kinematics } from './kinematics.js'
 import { Surroundings } from './surroundings.js'
 import { decodeMotion, decodePaths, decodeSteps, decodeTimes, kArc, kLine, kPause, kSpaceArc } from './decode.js'
 
-// The last index whose value is <= x; -1 where there is none.
+// The last index whose value is <= x; -1 if there is none.
 export function lastAtMost(values, x, count = values.length) {
   let low = 0, high = count
   while (low < high) {
@@ -15,9 +16,9 @@ export function lastAtMost(values, x, count = values.length) {
 }
 
 const empty = new Uint8Array(0)
-const kWait = 64  // clocks that a card may wait between two paths, with room
+const kWait = 64  // clocks that a card may wait between two paths, with a margin
 
-// The override in force. It changes after a request alone; what else few clocks are missing at are waits between two paths.
+// The override in force. It changes only after a request; a few missing clocks elsewhere are waits between two paths.
 class InForce {
   constructor(full, events) {
     this.full = full
@@ -26,7 +27,7 @@ class InForce {
     this.requests = events.filter(({ event }) => ['override', 'hold', 'resume'].includes(event))
     this.next = 0
   }
-  // From a slope of the map of times, good to 3 clocks. The slopes come in order.
+  // The ratio for a slope of the map of times, which is accurate to 3 clocks. Slopes must come in order.
   of(slope, begin, end) {
     for (; this.next < this.requests.length && this.requests[this.next].cycle < end; ++this.next) this.take(this.requests[this.next])
     const off = Math.abs(slope - this.goal) * (end - begin)
@@ -50,12 +51,12 @@ export class Run {
     this.axes = machine.motors.slice(0, machine.axes)
     this.kinematics = new Kinematics(machine)
     this.cycles = Math.max(1, run.cycles)
-    this.fullRatio = 1 / machine.max_override  // of the clocks, at 100 %
-    this.start = this.axes.map((axis) => axis.start)  // pulses by motor
+    this.fullRatio = 1 / machine.max_override  // of enabled clocks, at 100 %
+    this.start = this.axes.map((axis) => axis.start)  // pulses, by motor
     const text = new TextDecoder().decode(streams.get('program') ?? empty)
     this.program = text.split('\n')
     if (this.program.at(-1) === '') this.program.pop()
-    // Places of X, Y and Z among the axes; -1 where the machine has none.
+    // Indices of X, Y and Z among the axes; -1 if the machine does not have the axis.
     this.space = ['X', 'Y', 'Z'].map((letter) => this.axes.findIndex((axis) => axis.letter === letter))
     this.steps = this.motors.map((motor, i) => decodeSteps(
       streams.get(`steps-${i}`) ?? empty, streams.get(`delays-${i}`) ?? empty, motor.start + motor.before))
@@ -70,7 +71,7 @@ export class Run {
     this.lineIndex()
     this.surroundings = new Surroundings(this, streams)
   }
-  // Motion that was sent and never begun, of a run that did not come to its end.
+  // Removes motion that was sent but never began, in a run that did not reach its end.
   leaveOutUnbegun() {
     const { motion, paths } = this
     while (motion.count > 0 && motion.paths[motion.count - 1] >= paths.count) --motion.count
@@ -81,7 +82,7 @@ export class Run {
   placeInTime(points) {
     const motions = [], cycles = [], slopes = []
     const inForce = new InForce(this.fullRatio, this.facts.events)
-    this.gaps = []  // card clocks between two stretches, where nothing is commanded to move
+    this.gaps = []  // card clocks between two stretches, without commanded motion
     const total = this.motion.begins[this.motion.count] ?? 0
     for (let i = 0; i < points.length;) {
       let end = i + 1
@@ -99,7 +100,7 @@ export class Run {
       const put = (motion, cycle, after) => { motions.push(motion); cycles.push(cycle); slopes.push(after) }
       put(first.begin, from, enter)
       for (let p = i; p < end; ++p) put(points[p].motion, points[p].cycle, inner[p - i] ?? leave)
-      // What a probe has cut off takes no time.
+      // Motion that a probe has cut off takes no time.
       const whole = last.cycle + Math.max(0, stop - last.motion) / leave
       const next = points[end]
       const latest = next ? next.cycle - (next.motion - next.begin) / this.fullRatio : Infinity
@@ -110,7 +111,7 @@ export class Run {
     this.times = { motions: Float64Array.from(motions), cycles: Float64Array.from(cycles), slopes: Float64Array.from(slopes) }
   }
 
-  // The motion clock at a card clock, and how fast it goes.
+  // The motion clock at a card clock, and its rate.
   motionAt(cycle) {
     const { motions, cycles, slopes } = this.times
     const i = lastAtMost(cycles, cycle)
@@ -124,7 +125,7 @@ export class Run {
     const requests = this.facts.events.filter(({ event, cycle: at }) => at <= cycle && (event === 'hold' || event === 'resume'))
     return requests.at(-1)?.event === 'hold'
   }
-  // The last card clock at which the motion clock is there: behind a pause.
+  // The last card clock with this value of the motion clock: the end of a pause.
   cycleAt(motion) {
     const { motions, cycles } = this.times
     const i = lastAtMost(motions, motion)
@@ -136,7 +137,7 @@ export class Run {
 
   // ---- commanded
 
-  // Ticks of each stretch before it on its path, geometry ready to be asked, and when each path begins.
+  // Computes for each stretch the ticks before it on its path, and the beginning of each path.
   placeOnPaths() {
     const { paths, motion } = this
     this.ticksBefore = new Float64Array(motion.count)
@@ -152,7 +153,7 @@ export class Run {
       const t = motion.begins[s + 1] - motion.begins[s]
       this.pathTicks[p] += t * (motion.rates[s] + t * (motion.accelerations[s] / 2 + t * motion.jerks[s] / 6))
     }
-    // A pause, and a path without a stretch of its own, begin where the one before ends.
+    // A pause, and a path without its own stretch, begin at the end of the previous one.
     let at = 0
     for (let p = 0; p < paths.count; ++p) {
       if (this.pathMotion[p] < 0) this.pathMotion[p] = at
@@ -163,7 +164,7 @@ export class Run {
       this.pathBegin[p] = pause ? this.cycleBefore(this.pathMotion[p]) : this.cycleAt(this.pathMotion[p])
     }
   }
-  // The first card clock at which the motion clock is there: before a pause.
+  // The first card clock with this value of the motion clock: the beginning of a pause.
   cycleBefore(motion) {
     const { motions, cycles } = this.times
     let i = lastAtMost(motions, motion)
@@ -171,7 +172,7 @@ export class Run {
     if (i < 0) return 0
     return motions[i] === motion ? cycles[i] : this.cycleAt(motion)
   }
-  // Pulses of a motor.
+  // Start and end of a path, in pulses of a motor.
   startOf(path, motor) {
     if (this.paths.flags[path] & 512) return this.paths.starts.get(path)[motor]
     return path > 0 ? this.endOf(path - 1, motor) : this.start[motor]
@@ -184,7 +185,7 @@ export class Run {
   // The stretch at a motion clock.
   stretchAt(motion) { return Math.min(lastAtMost(this.motion.begins, motion, this.motion.count), this.motion.count - 1) }
 
-  // Share of its path that lies behind, and its first three derivatives by seconds at an override of 100 %.
+  // Completed share of its path, and the first three derivatives with respect to seconds, at an override of 100 %.
   shareAt(stretch, clocks) {
     const { motion } = this
     const v = motion.rates[stretch], a = motion.accelerations[stretch], j = motion.jerks[stretch]
@@ -198,7 +199,7 @@ export class Run {
     ]
   }
 
-  // What an axis does (mm, mm/s, mm/s^2, mm/s^3) on a path, from what its share does.
+  // Motion of an axis (mm, mm/s, mm/s^2, mm/s^3) on a path, from the share and its derivatives.
   axisAt(path, axis, [share, v, a, j]) {
     const from = this.axisFrom(path, axis)
     const way = this.axisTo(path, axis) - from
@@ -231,7 +232,7 @@ export class Run {
     ]
   }
   turnOf(path, arc) { return this.paths.flags[path] & 16 ? -arc.sweep : arc.sweep }
-  // mm: radii at both ends, the angle at the start, the centre.
+  // Radii at both ends and centre, in mm, and the angle at the start.
   circleOf(path, arc) {
     if (arc.circle) return arc.circle
     const at = arc.centre
@@ -240,13 +241,13 @@ export class Run {
     const r1 = Math.hypot(this.axisTo(path, arc.plane[0]) - at[0], this.axisTo(path, arc.plane[1]) - at[1])
     return arc.circle = { at, r0, r1, angle: Math.atan2(dy, dx) }
   }
-  // mm, X Y Z, of the commanded path.
+  // Point of the commanded path, X Y Z in mm.
   pointAt(path, share) {
     return this.space.map((axis) => axis < 0 ? 0 : this.axisAt(path, axis, [share, 0, 0, 0])[0])
   }
-  // mm/s along the path, at 100 %.
+  // Speed along the path in mm/s, at 100 %.
   pathSpeed(path, v) { return this.paths.lengths[path] * v }
-  // The largest share that an axis has of its limit of acceleration.
+  // The largest ratio of an axis's acceleration to its limit.
   loadAt(path, derivatives) {
     let most = 0
     for (let a = 0; a < this.axes.length; ++a) {
@@ -258,7 +259,8 @@ export class Run {
 
   // ---- executed
 
-  // Steps of all axes of one clock as one place (X Y Z, mm), the path that they belong to, and how far it is from that.
+  // Merges the steps of all axes in one clock into one place (X Y Z, mm), with the path of the steps and the distance
+  // from it.
   mergeSteps() {
     const { steps, axes, space } = this
     let count = 0
@@ -310,7 +312,7 @@ export class Run {
       if (deviation[i] > this.pathDeviation[path[i]]) this.pathDeviation[path[i]] = deviation[i]
     }
   }
-  // The middle of the commanded path: single precision counts from there.
+  // The middle of the commanded path, the origin for single-precision numbers.
   centreOf() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
     for (let p = -1; p < this.paths.count; ++p) {
@@ -324,7 +326,8 @@ export class Run {
     return low.map((x, i) => (x + high[i]) / 2)
   }
   startCoordinate(axis) { return this.kinematics.coordinate(axis, (motor) => this.start[motor]) }
-  // Prepares judge() for a path: pulses from its line, or outside the annulus of its arc's ends.
+  // Prepares judge() for a path: distance in pulses from its line, or from the annulus between the radii of its arc's
+  // ends.
   judgeOf(path) {
     this.judged = null
     if (path >= this.paths.count) return
@@ -368,13 +371,13 @@ export class Run {
     return Math.sqrt(square)
   }
 
-  // Pulses of a motor at a card clock, at its pin.
+  // Position of a motor in pulses, at its pin, at a card clock.
   positionAt(motor, cycle) {
     const steps = this.steps[motor]
     const i = lastAtMost(steps.pins, cycle)
     return i < 0 ? this.motors[motor].start + this.motors[motor].before : steps.positions[i]
   }
-  // mm of an axis at a card clock, by the pulses at the pins.
+  // Position of an axis in mm at a card clock, from the pulses at the pins.
   coordinateAt(axis, cycle) { return this.kinematics.coordinate(axis, (motor) => this.positionAt(motor, cycle)) }
 
   // ---- program
@@ -383,9 +386,9 @@ export class Run {
     this.firstPath = new Int32Array(this.program.length + 2).fill(-1)
     for (let p = this.paths.count - 1; p >= 0; --p) this.firstPath[this.paths.lines[p]] = p
   }
-  // The path that is under way, or the last one.
+  // The current path, or the last one.
   pathAt(cycle) { return Math.max(0, lastAtMost(this.pathBegin, cycle)) }
-  // When a line begins; of one that moves nothing the next that does.
+  // The beginning of a line; for one without motion, that of the next line with motion.
   beginOfLine(line) {
     for (let i = line; i < this.firstPath.length; ++i) {
       if (this.firstPath[i] >= 0) return this.pathBegin[this.firstPath[i]]

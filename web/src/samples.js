@@ -1,8 +1,8 @@
-// What the charts show of a stretch of time: two values a column of pixels, the least and the most in it in the order
-// in which they come.
+// Data of the charts for a stretch of time: two values per column of pixels, its minimum and maximum in the order in
+// which they occur.
 import { lastAtMost } from './run.js'
 
-// A row of values by column.
+// A row of values, one pair per column.
 class Envelope {
   constructor(columns) {
     this.values = new Float64Array(2 * columns)
@@ -27,8 +27,8 @@ class Envelope {
   }
 }
 
-// From card clock `from` to `to`: times in seconds, the commanded speed along the path (mm/s), of each axis speed,
-// acceleration and jerk; the achieved speed with its range; the override in percent.
+// From card clock `from` to `to`: times in seconds; the commanded speed along the path (mm/s); speed, acceleration and
+// jerk of each axis; the achieved speed with its range; the override in percent.
 export function sample(run, achieved, from, to, columns) {
   const axes = run.axes.length
   const x = new Float64Array(2 * columns)
@@ -82,7 +82,7 @@ export function sample(run, achieved, from, to, columns) {
       envelope.put(surroundings.apartAt(n, t0))
       for (let i = lastAtMost(changes, t0) + 1; i < changes.length && changes[i] < t1; ++i) envelope.put(pulses[i] / scale)
     })
-    // Pieces of the map of times in this column; between two motions all stand still.
+    // Pieces of the map of times in this column; between two motions all axes are at rest.
     let i = lastAtMost(times.cycles, t0)
     if (i < 0) {
       rest()
@@ -117,7 +117,7 @@ export function sample(run, achieved, from, to, columns) {
   }
 }
 
-// All that stands beside the charts, at one clock.
+// All values shown next to the charts, at one clock.
 export function readout(run, achieved, cycle) {
   const { motion, ratio } = run.motionAt(cycle)
   const stretch = run.stretchAt(motion)
@@ -127,7 +127,7 @@ export function readout(run, achieved, cycle) {
   const of = stretch < 0 ? path : run.motion.paths[stretch]
   const percent = 100 * ratio / run.fullRatio
   return {
-    // From the last step of a hold's ramp to the first one after the hold the slope is a little more than 0.
+    // From the last step of a hold's ramp to the first one after the hold, the slope is slightly above 0.
     path, still, percent: still ? null : run.heldAt(cycle) && percent < 1 ? 0 : percent,
     commanded: still ? 0 : run.pathSpeed(of, share[1]), achieved: achieved.at(cycle),
     axes: run.axes.map((_, a) => still ? [NaN, 0, 0, 0] : run.axisAt(of, a, share)),

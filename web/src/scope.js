@@ -1,4 +1,4 @@
-// STEP and DIR pins as a scope: single pulses where they can be told apart, else how densely they come.
+// STEP and DIR pins as on an oscilloscope: single pulses if they are far enough apart, otherwise their density.
 import { contextOf, make, sizeCanvas } from './dom.js'
 import { axisColour, colour } from './theme.js'
 import { alpha, turns } from './charts.js'
@@ -65,7 +65,7 @@ export class Scope {
     context.strokeStyle = ink
     context.lineWidth = 1.2
     if (end - first < 4 * (this.width - left)) {
-      // The least pulse in view is as wide as its pixels; a narrower one is a line.
+      // A pulse is drawn with its width in pixels; one narrower than a pixel is a line.
       context.beginPath()
       context.moveTo(left, top + height)
       for (let i = first; i < Math.min(end, count); ++i) {
@@ -79,7 +79,7 @@ export class Scope {
       context.stroke()
       return
     }
-    // Share of the densest column.
+    // Relative to the densest column.
     const columns = Math.floor(this.width - left)
     const counts = new Float64Array(columns)
     let before = first
@@ -121,7 +121,7 @@ export class Scope {
   }
 }
 
-// Clocks at which DIR turns, and its level from then on: 1 is negative unless the machine inverts it.
+// Clocks at which DIR changes, and its level from then on: 1 is negative unless the machine inverts it.
 export function turnsOf(run, m) {
   const { pins, positions, count } = run.steps[m]
   const { dir_lead: lead, inverted, start, before } = run.motors[m]

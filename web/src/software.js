@@ -1,4 +1,4 @@
-// Whether the browser draws WebGL on the processor, for want of a graphics card.
+// Whether the browser draws WebGL on the processor, because there is no graphics card.
 export function drawsInSoftware() {
   const context = document.createElement('canvas').getContext('webgl2')
   const names = context?.getExtension('WEBGL_debug_renderer_info')

@@ -1,4 +1,4 @@
-// The page's own elements as bytes.
+// The data in the page's own elements, as bytes.
 
 const fromBase64 = Uint8Array.fromBase64
   ? (text) => Uint8Array.fromBase64(text)
@@ -9,7 +9,7 @@ async function inflated(parts) {
   return new Uint8Array(await new Response(stream).arrayBuffer())
 }
 
-// All streams by name; their elements leave the document.
+// All streams by name; removes their elements from the document.
 export async function readStreams(document) {
   const parts = new Map()
   for (const element of document.querySelectorAll('script[data-stream]')) {

@@ -1,10 +1,10 @@
-// What the run comes to, in words and numbers.
+// The summary of the run, in words and numbers.
 import { make } from './dom.js'
 import { duration, fixed, grouped, millimetres, number } from './format.js'
 import { kPause } from './decode.js'
 import { placeText } from './surroundings.js'
 
-// Seconds and millimetres with a feed, by rapids, and at rest.
+// Seconds and millimetres of feed moves and rapids, and seconds at rest.
 export function totalsOf(run) {
   const { paths } = run
   const totals = { feed: 0, rapid: 0, pauses: 0, stops: 0 }
@@ -19,7 +19,7 @@ export function totalsOf(run) {
   return totals
 }
 
-// Holds for want of commands and the time lost to them, where nobody held the card or changed its speed.
+// Holds caused by under-runs and the time lost, outside the operator's holds and changes of speed.
 export function underRunsText({ under_runs: count, events, seconds, planned_seconds: planned }) {
   if (count == null) return '–'
   return count > 0 && events.length === 0 ? `${grouped(count)}, ${fixed(seconds - planned, 3)} s longer than planned` : grouped(count)
@@ -86,7 +86,7 @@ export function fillSummary(element, run, goToLine, goTo) {
   }
 }
 
-// Causes with their reactions, and what a machine behind the pins has made of the pulses.
+// Causes with their reactions, and the motion of a machine behind the pins.
 function fillSurroundings(run, add, table, line, goTo) {
   const { surroundings, facts } = run
   const when = (cycle) => make('button', { class: 'go', onclick: () => goTo(cycle), title: 'Go there' }, `${fixed(run.seconds(cycle), 4)} s`)

@@ -1,14 +1,14 @@
-// What goes on around the card: inputs by role, causes with their reactions, and where pulses and carriages part. No
-// document here.
+// Events around the card: inputs by role, causes with their reactions, and differences between pulses and carriages.
+// Does not use the document.
 import { Bytes } from './decode.js'
 import { fixed } from './format.js'
 import { lastAtMost } from './run.js'
 
-const kEmergencyStop = 32  // number of its pin among the inputs
+const kEmergencyStop = 32  // number of the emergency stop's pin among the inputs
 
 const empty = new Uint8Array(0)
 
-// Changes of pins: clocks, and the numbers of the pins that change there.
+// Changes of pins: clocks, and the numbers of the pins that change at these clocks.
 export function decodeInputs(data) {
   const bytes = new Bytes(data)
   const changes = []
@@ -23,7 +23,7 @@ export function decodeInputs(data) {
   return changes
 }
 
-// Clocks, and by how many pulses the card's count is ahead of the carriage from there on.
+// Clocks, and the number of pulses by which the card's count is ahead of the carriage from then on.
 export function decodeApart(data) {
   const bytes = new Bytes(data)
   const times = [], pulses = []
@@ -35,7 +35,7 @@ export function decodeApart(data) {
   return { times: Float64Array.from(times), pulses: Float64Array.from(pulses) }
 }
 
-// An input over time: clocks at which it changes, and whether it is active from there on.
+// An input over time: clocks at which it changes, and whether it is active from then on.
 function laneOf(lane, changes) {
   const times = [], active = []
   let level = lane.level
@@ -53,7 +53,7 @@ function laneOf(lane, changes) {
 export class Surroundings {
   constructor(run, streams) {
     const { facts } = run
-    // Those that the operator's script sets have no stream.
+    // Inputs that the operator's script sets have no stream.
     const scripted = facts.events.filter(({ event }) => event === 'input' || event === 'emergency stop').map((event) => ({
       cycle: event.cycle, input: event.event === 'input' ? event.input : kEmergencyStop,
       level: event.event === 'input' ? event.level : event.pressed ? 1 : 0,
@@ -79,13 +79,14 @@ export class Surroundings {
     return [...run.facts.causes ?? [], ...holds, ...parting].sort((a, b) => a.cycle - b.cycle)
       .map((mark) => ({ ...mark, place: place(mark) }))
   }
-  // mm of an axis of the world, at a card clock.
+  // Position of an axis of the simulated machine in mm, at a card clock.
   apartAt(n, cycle) {
     const { times, pulses, pulses_per_mm: scale } = this.apart[n]
     const i = lastAtMost(times, cycle)
     return i < 0 ? 0 : pulses[i] / scale
   }
-  // Whether anything of it is worth a row from the start: a hold of the operator's script shows in the override.
+  // Whether a row is shown from the start; a hold by the operator's script does not need one, because the override
+  // shows it.
   get busy() { return this.marks.some(({ operator }) => !operator) || this.lanes.some(({ times }) => times.length > 0) }
 }
 
@@ -93,7 +94,7 @@ export const activeAt = (lane, cycle) => {
   const i = lastAtMost(lane.times, cycle)
   return i < 0 ? lane.begin : lane.states[i]
 }
-// X 300.013 Y 0.000: of the axes that move in the run.
+// X 300.013 Y 0.000: for the axes that move in the run.
 export function placeText(run, place) {
   const moves = (axis) => run.kinematics.inverse[axis].some(({ motor }) => run.steps[motor].count > 0 || run.motors[motor].beside > 0)
   return run.axes.flatMap(({ letter }, a) => moves(a) ? [`${letter} ${fixed(place[a], 3)}`] : []).join(' ')

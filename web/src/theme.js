@@ -13,7 +13,7 @@ export function setTheme(dark) {
   parsed = new Map()
 }
 
-// From slow to fast, seen well on either ground: blue, teal, green, yellow or orange, red.
+// From slow to fast, visible on both backgrounds: blue, teal, green, yellow or orange, red.
 const ramps = {
   light: [[49, 54, 149], [33, 113, 181], [0, 137, 123], [92, 160, 41], [230, 145, 20], [204, 40, 48]],
   dark: [[98, 110, 235], [70, 150, 245], [40, 190, 185], [130, 205, 80], [250, 190, 60], [255, 95, 85]],

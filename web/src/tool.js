@@ -1,12 +1,12 @@
-// The tool: a cone whose tip is where the tool is. A small canvas of its own lies over the path and is only moved, so a
-// cursor never has the path drawn anew.
+// The tool: a cone with its tip at the tool's position. It has a small canvas over the path, which is only moved, so
+// that the cursor never redraws the path.
 import { Vector3 } from 'three'
 import { colour } from './theme.js'
 
-const kHeight = 24    // of the cone, pixels
+const kHeight = 24    // height of the cone, pixels
 const kRadius = 8.6
-const kCorners = 24   // of its base
-const kSide = 64      // of the canvas; the tip is in its middle
+const kCorners = 24   // corners of its base
+const kSide = 64      // side of the canvas; the tip is in its middle
 
 export class Tool {
   constructor() {
@@ -14,7 +14,7 @@ export class Tool {
     this.canvas = document.createElement('canvas')
     this.canvas.className = 'tool'
   }
-  // Moves the canvas to the tip's place; where the direction of view or the colours have changed, the cone is drawn anew.
+  // Moves the canvas to the tip's place; redraws the cone if the direction of view or the colours have changed.
   draw(camera, width, height, ratio) {
     const at = this.position.clone().project(camera)
     const x = (at.x + 1) / 2 * width, y = (1 - at.y) / 2 * height

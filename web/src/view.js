@@ -1,7 +1,7 @@
-// The tool path in three dimensions: commanded lines in colour, rapids apart, the executed pulses where they can be told
-// apart, and over them the tool. Orthographic, so that plan views measure; the camera's zoom is pixels a mm.
-// While the view moves, a long path is an outline: all of it is drawn once the view is still, slice by slice, so that the
-// next movement waits for one slice only.
+// The tool path in three dimensions: commanded lines in colour, rapids in another style, the executed pulses if they
+// are far enough apart, and the tool on top. The camera is orthographic, so that plan views are to scale; its zoom is
+// pixels per mm. While the view moves, a long path is drawn as an outline. The whole path is drawn when the view is
+// still, slice by slice, so that the next movement waits for only one slice.
 import {
   BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, MOUSE,
   OrthographicCamera, Scene, Vector3, WebGLRenderer,
@@ -19,10 +19,10 @@ import { drawsInSoftware } from './software.js'
 import { colour, ramp } from './theme.js'
 import { Tool } from './tool.js'
 
-const kWide = 10000    // lines that are drawn wider than a pixel
-const kOutline = 4000  // lines that are drawn while the view moves
-const kSlice = 10000   // lines that are drawn in one frame of a still view
-const kStill = 150     // ms after its last movement the view is still
+const kWide = 10000    // most lines that are drawn wider than a pixel
+const kOutline = 4000  // most lines that are drawn while the view moves
+const kSlice = 10000   // most lines per frame of a still view
+const kStill = 150     // ms after the last movement until the view counts as still
 
 const directions = {
   iso: new Vector3(-0.55, -1, 0.85),
@@ -37,7 +37,7 @@ export const coloured = {
 }
 
 export class View {
-  // Over: what lies over the element, the tools first; the path is fitted below those.
+  // Over: elements on top of this one, the tools first; the path is fitted below the tools.
   constructor(element, run, over) {
     this.element = element
     this.over = over
@@ -50,9 +50,9 @@ export class View {
     this.lines = this.course.feed.points.length / 6
     this.wide = this.lines <= kWide
     this.software = drawsInSoftware()
-    // Smooth edges of a long path take a processor longer than the path itself.
+    // On a processor, smooth edges of a long path take longer than the path itself.
     this.renderer = new WebGLRenderer({ antialias: this.wide || !this.software, preserveDrawingBuffer: true })
-    this.renderer.info.autoReset = false  // it counts all slices of a drawing
+    this.renderer.info.autoReset = false  // counts all slices of a drawing
     this.annotations = new Annotations(this)
     this.tool = new Tool()
     element.append(this.renderer.domElement, this.annotations.canvas, this.tool.canvas)
@@ -97,7 +97,7 @@ export class View {
     this.closeUp = new Group().add(this.executed.detail, this.executed.dots)  // above the last slice
     this.paint()
   }
-  // What may be shown or not: 'rapid', 'executed', 'grid'.
+  // Shows or hides a part: 'rapid', 'executed', 'grid'.
   isShown(what) { return what === 'rapid' ? this.rapid.visible : this[what].shown }
   show(what, on) {
     if (what === 'rapid') this.rapid.visible = on
@@ -108,7 +108,7 @@ export class View {
 
   // ---- colours
 
-  // The largest value of a colouring.
+  // The largest value of a colour scale.
   scaleOf(mode) {
     const values = this.course.feed[mode]
     let most = 0
@@ -156,7 +156,7 @@ export class View {
     this.camera.lookAt(this.controls.target)
     this.fit()
   }
-  // All of the path in the view, whatever the direction.
+  // Fits the whole path into the view, for any direction.
   fit() {
     this.camera.updateMatrixWorld()
     const inverse = this.camera.matrixWorldInverse
@@ -173,10 +173,11 @@ export class View {
     const { feed, rapid } = this.course
     for (const { points } of [feed, rapid]) take(points, Math.max(1, Math.floor(points.length / 15000)))
     if (low.x > high.x) take([...this.box.low, ...this.box.high])
-    // The numbers at the grid too.
+    // With room for the numbers at the grid.
     if (this.grid.shown) take(this.grid.corners())
     const spanX = Math.max(high.x - low.x, 40 * this.pulse), spanY = Math.max(high.y - low.y, 40 * this.pulse)
-    // Room for the tools above (in a low view they may cover some), for the numbers around the grid, and for the scale.
+    // Leaves room for the tools at the top (in a low view they may cover a part), for the numbers around the grid, and
+    // for the scale.
     const covered = this.over[0].getBoundingClientRect().bottom - this.element.getBoundingClientRect().top
     const above = Math.min(Math.max(0, covered + 12), height / 4), around = 22, below = 46
     this.camera.zoom = Math.min((width - 4 * around) / spanX, (height - above - around - below) / spanY)
@@ -193,7 +194,7 @@ export class View {
     this.fitted = false
     this.moved()
   }
-  // The tool in the middle, single pulses wide apart.
+  // The tool in the middle, with single pulses far apart.
   close() {
     this.camera.zoom = 16 / this.pulse
     this.moveTo(this.tool.position)
@@ -225,14 +226,14 @@ export class View {
     this.draw()
   }
   draw() { this.nextFrame(() => this.drawNow()) }
-  // In place of anything else that waits for that frame.
+  // Replaces any other request for that frame.
   nextFrame(act) {
     this.act = act
     this.frame ||= requestAnimationFrame(() => { this.frame = 0; this.act() })
   }
   drawNow() {
     const { zoom } = this.camera
-    // A processor needs several frames for wide lines, however few they are.
+    // A processor needs several frames for wide lines, even for few of them.
     const quick = this.moving && (this.software || this.lines > kOutline)
     this.outline.visible = quick
     this.feed.visible = !quick && this.lines > 0
@@ -246,7 +247,7 @@ export class View {
     this.annotations.draw()
     this.placeTool()
   }
-  // Lines of the path from the first on with all else in the object, and in the next frame those that follow.
+  // Draws lines of the path from the first one on, with all other objects, and the following ones in the next frame.
   drawSlice(object, first, lines) {
     if (!this.wide) this.feed.geometry.setDrawRange(2 * first, 2 * kSlice)
     this.renderer.render(object, this.camera)

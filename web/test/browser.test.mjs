@@ -1,4 +1,5 @@
-// The page in headless Chromium: it draws, the cursor works, the console is silent, a program's text stays text.
+// The page in headless Chromium: it draws, the cursor works, the console has no messages, and a program's text stays
+// text.
 //   TRAMMEL=.../trammel TRAMMEL_EXAMPLES=examples CHROMIUM=... node --test browser.test.mjs
 import assert from 'node:assert/strict'
 import { mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs'
@@ -13,7 +14,7 @@ const examples = process.env.TRAMMEL_EXAMPLES
 const folder = mkdtempSync(join(tmpdir(), 'trammel-'))
 let browser
 before(async () => {
-  // Without a graphics card; and as root, in a container, there is no sandbox.
+  // No graphics card is used; as root in a container, there is no sandbox.
   browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] })
 })
 after(async () => {
@@ -39,7 +40,7 @@ function partReport() {
 async function open(file, scheme = 'light') {
   const page = await browser.newPage({ viewport: { width: 1100, height: 700 }, colorScheme: scheme })
   const said = []
-  // Without a graphics card the browser reads its own pictures back, and says so.
+  // Without a graphics card the browser reads its pictures back and prints a warning about it.
   page.on('console', (message) => { if (!/GPU stall due to ReadPixels/.test(message.text())) said.push(message.text()) })
   page.on('pageerror', (error) => said.push(String(error)))
   page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) said.push(`asks for ${request.url()}`) })
@@ -47,11 +48,11 @@ async function open(file, scheme = 'light') {
   await page.goto(`file://${file}`)
   await page.waitForFunction(() => document.documentElement.dataset.ready === 'true')
   const milliseconds = Date.now() - begun
-  await still(page)  // until then a moving view may show its outline
+  await still(page)  // before that, a moving view may show its outline
   return { page, said, milliseconds }
 }
 const still = (page) => page.waitForFunction(() => !window.trammel.view.moving && !window.trammel.view.frame)
-// Pixels of a canvas that differ from its first.
+// Number of pixels of a canvas that differ from its first one.
 const drawn = (page, selector) => page.evaluate((name) => {
   const canvas = document.querySelector(name)
   const copy = document.createElement('canvas')
@@ -77,7 +78,7 @@ async function lookClosely(page) {
   assert.ok(times.some((time) => time > from && time < to), 'a pulse is in view')
 }
 
-// Texts that the next drawing of the path writes, each with its box; and what of the page lies over the path.
+// Texts that the next drawing of the path writes, each with its box, and the elements of the page on top of the path.
 const labels = (page) => page.evaluate(async () => {
   const written = []
   const { fillText } = CanvasRenderingContext2D.prototype
@@ -94,7 +95,7 @@ const labels = (page) => page.evaluate(async () => {
   return [...written, ...over.map(({ text, box }) => ({ text, box: [box.left - left, box.top - top, box.right - left, box.bottom - top] }))]
 })
 async function noLabelCoversAnother(page) {
-  // Wide, start and end leave all twelve numbers of the grid their places.
+  // In a wide view, the labels of start and end leave room for all twelve numbers of the grid.
   for (const [width, height, view, numbers] of [[1360, 920, '1', 12], [700, 900, '1', 9], [700, 900, '4', 3]]) {
     await page.setViewportSize({ width, height })
     await page.keyboard.press(view)
@@ -129,12 +130,12 @@ for (const scheme of ['light', 'dark']) {
     const after = await state()
     for (const what of ['tool', 'line', 'clock', 'left']) assert.notDeepEqual(after[what], before[what], what)
     assert.ok(after.cycle > 0.6 * 29e6 && after.cycle < 0.8 * 29e6, `${after.cycle}`)
-    // A click on a line puts the cursor where its path begins.
+    // A click on a line moves the cursor to the beginning of its path.
     await page.evaluate(() => { document.querySelector('#program').scrollTop = 0 })
     await page.locator('#program .line[data-line="13"]').click()
     await frame(page)
     assert.equal((await state()).line, '13')
-    // The next pulse is one pulse on.
+    // The next pulse is one pulse further.
     const pulses = () => page.evaluate(() => window.trammel.run.motors.map((_, m) => window.trammel.run.positionAt(m, window.trammel.cycle + 20)))
     await page.locator('#charts').focus()
     const at = await pulses()
@@ -174,7 +175,7 @@ test('programs with next to nothing in them draw', async () => {
 })
 
 test('a million pulses', async (context) => {
-  // A slow clock has few ticks a pulse: the simulation is quick.
+  // A slow clock has few ticks per pulse, so the simulation is fast.
   const circles = Array.from({ length: 122 }, (_, i) => `G1 X${i % 2 ? 0 : 39} Y${i % 40}\nG2 I${i % 2 ? 8 : -8} F6000\n`).join('')
   const file = report(`G21 G90 G91.1\nF6000\n${circles}`, '--clock', '100000')
   const size = statSync(file).size
@@ -196,8 +197,8 @@ function wave(lines, turns = 20) {
   }
   return `G21 G90 G64\nF6000\n${Array.from({ length: lines }, (_, i) => corner(i)).join('')}`
 }
-// Milliseconds from when the browser has an event until two more frames are there, the middle of some. The page's own
-// clock: the way of a tick of the wheel from here to the browser takes 30 ms.
+// Milliseconds from an event in the browser until two more frames, as a median. Measured with the page's own clock,
+// because a tick of the wheel takes 30 ms from here to the browser.
 const rounds = process.env.TRAMMEL_LONG ? 7 : 3
 async function middleTime(page, type, act, prepare = async () => {}) {
   const times = []
@@ -216,7 +217,7 @@ async function middleTime(page, type, act, prepare = async () => {}) {
 const drawings = (page) => page.evaluate(() => window.trammel.view.renderer.info.render.frame)
 const linesDrawn = (page) => page.evaluate(() => window.trammel.view.renderer.info.render.lines)
 
-// With TRAMMEL_LONG the long path, whose times are judged: without a graphics card a drawing of all of it takes a second.
+// With TRAMMEL_LONG, the times of the long path are judged; without a graphics card, drawing all of it takes a second.
 const long = process.env.TRAMMEL_LONG
 test('a cursor has no path drawn anew, and a moving view has an outline drawn', async (context) => {
   const { page, said } = await open(report(long ? wave(60000, 45) : wave(1500), '--clock', '100000'))
@@ -232,7 +233,7 @@ test('a cursor has no path drawn anew, and a moving view has an outline drawn', 
   assert.equal(await drawings(page), before, 'drawings for a cursor')
   const box = await page.locator('#view').boundingBox()
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2)
-  // The page notes what each drawing of a moving view has: how long one moves is its own affair.
+  // The page records each drawing of a moving view, because the page itself decides how long a view counts as moving.
   await page.evaluate(() => {
     const { view } = window.trammel
     const { drawNow } = view
@@ -247,7 +248,7 @@ test('a cursor has no path drawn anew, and a moving view has an outline drawn', 
   assert.ok(moving.length && Math.max(...moving) < 8000, `${moving} lines while the view moves`)
   await still(page)
   assert.ok(await linesDrawn(page) >= (long ? 60000 : 10001), 'all once it is still')
-  // A tick while all of the path is being drawn leaves the rest of that drawing out.
+  // A tick of the wheel while the whole path is being drawn cancels the rest of that drawing.
   const stopped = []
   const late = await middleTime(page, 'wheel', () => page.mouse.wheel(0, 40), async () => {
     stopped.push(await page.evaluate(() => new Promise((done) => {
@@ -294,7 +295,7 @@ async function allInView(page) {
   assert.deepEqual(seen.broken, [])
 }
 
-// With a fourth axis that moves, or the chart of overrides; numbers are as long as they get.
+// With a moving fourth axis, or with the chart of overrides; numbers have their greatest length.
 for (const [name, extruder, ...options] of [['a print', ' E3'], ['an override', '', '--override-at', '0.3:57', '--hold-at', '1:0.5']]) {
   test(`all charts of ${name} are in view, each value in one line`, async () => {
     const { page, said } = await open(report(`G21 G90 M83\nG1 X-9.13 Y7.77 Z1${extruder} F1000\nG1 X5${extruder} F700\n`, ...options))
@@ -352,7 +353,7 @@ test('inputs, causes, reactions, and where pulses and carriage part are seen', a
   assert.ok(await drawn(page, '#row-apart canvas') > 500, 'the difference')
   const lanes = await page.evaluate(() => [...document.querySelectorAll('#row-inputs .name')].map((one) => one.textContent))
   assert.deepEqual(lanes, ['Y limit plus', 'feed hold', 'cycle start'])
-  // Each has a line in the charts, and as much of its text as there is room for.
+  // Each has a line in the charts, and as much of its text as fits.
   const named = await page.evaluate(() => window.trammel.lanes.named)
   assert.equal(named.length, 3, named.join('; '))
   for (const name of ['feed hold button: hold', 'X loses steps', 'LIMIT (axis 1 plus)']) {
@@ -367,7 +368,7 @@ test('inputs, causes, reactions, and where pulses and carriage part are seen', a
   assert.match(summary, /By LIMIT \(axis 1 plus\), at line 4/)
   assert.match(summary, /LIMIT \(axis 1 plus\)X 45\.000 Y 40\.\d{3}.*immediate stop/)
   assert.match(summary, /X from \d\.\d{4} s on[\d ]+ steps, \d+\.\d{3} mm at the end/)
-  // The mark's time in the table leads there, and its line in the charts stands under the cursor.
+  // The mark's time in the table moves the cursor there, and its line in the charts is under the cursor.
   await page.locator('#summary .go', { hasText: ' s' }).first().click()
   await frame(page)
   assert.ok(await page.evaluate(() => window.trammel.run.surroundings.marks.some(({ cycle }) => cycle === window.trammel.cycle)))

@@ -1,4 +1,4 @@
-// What the page reads of a report against what the command wrote beside it:
+// Compares the page's reading of a report with the other output files of the command:
 //   TRAMMEL=.../trammel node --test decoder.test.mjs
 import assert from 'node:assert/strict'
 import { spawnSync } from 'node:child_process'
@@ -30,7 +30,7 @@ function programOf(text) {
   writeFileSync(file, text)
   return file
 }
-// Each pulse of the list at its clock, by motor.
+// Checks each pulse of the list at its clock, by motor.
 function expectPulses({ run, list }) {
   run.steps.forEach((steps, motor) => {
     const expected = list.filter((step) => step[1] === motor)
@@ -43,7 +43,7 @@ function expectPulses({ run, list }) {
     })
   })
 }
-// How far, in pulses of an axis, the commanded place ever is from the executed one at a step.
+// The greatest distance, in pulses of an axis, between the commanded and the executed place at a step.
 function worstPlace(run, counts = () => true) {
   let worst = 0
   for (let i = 0; i < run.executed.count; i += 7) {
@@ -98,8 +98,8 @@ test('the deviations that the page finds are those that the run measured', () =>
   assert.ok(run.program[place.line - 1].length > 0)
 })
 
-// The commanded place at the clock of each step against what the pulses have made by then: each within half a pulse of the
-// path, the arcs' closing beside it, and what moves in the clocks by which the map of times may be off.
+// The commanded place at the clock of each step, compared with the executed pulses. The tolerance is half a pulse, plus
+// the closing of arcs, plus the motion in the clocks by which the map of times may be off.
 for (const [name, ...options] of [['at full speed'], ['held and overridden', '--hold-at', '2:1.5', '--override-at', '6:30'], ['S-curves', ...['x', 'y', 'z', 'e'].flatMap((axis) => ['--set', `axis.${axis}.max_jerk=20000`])]]) {
   test(`at every time the commanded place is the executed one: ${name}`, () => {
     const { run } = report(part, '--clock', '1000000', ...options)
@@ -215,7 +215,7 @@ test('each line begins when the first pulse of its path comes', () => {
   const firstOf = (line) => run.executed.times[run.executed.paths.findIndex((path) => run.paths.lines[path] === line)]
   for (const line of [3, 5]) assert.ok(Math.abs(run.beginOfLine(line) - firstOf(line)) < 0.02 * run.clockHz, `line ${line}`)
   assert.equal(run.beginOfLine(2), run.beginOfLine(3))
-  // The dwell lies between them.
+  // The dwell is between them.
   assert.ok(run.beginOfLine(5) - run.beginOfLine(4) >= 0.5 * run.clockHz)
 })
 
@@ -291,7 +291,7 @@ test('in a hold the actual speed of an axis is 0, and its sign is that of the mo
   assert.ok(Math.abs(actual(7.5) + 10) < 0.2, `${actual(7.5)}`)
 })
 
-// Runs of a machine behind the pins, with the limits of the default world as roles.
+// Runs with a machine behind the pins, and the limit switches of the default world as roles.
 const roles = ['--set', 'inputs.x_limit_plus=1', '--set', 'inputs.feed_hold=6', '--set', 'inputs.cycle_start=7']
 function stoppedBy(text, ...options) {
   const page = join(folder, 'stopped.html')
@@ -305,7 +305,7 @@ test('a limit stops the run, and its page ends there', () => {
   const [mark, ...others] = run.surroundings.marks
   assert.equal(others.length, 0)
   assert.deepEqual([mark.name, mark.reaction, mark.line], ['LIMIT (axis 0 plus)', 'immediate stop', 3])
-  // The switch is at 300 mm; it stands 100 mm/s from there for a filter of 1 ms and the scan behind it.
+  // The switch is at 300 mm; at 100 mm/s, the axis moves further for the filter time of 1 ms and the scan after it.
   assert.ok(mark.place[0] > 300 && mark.place[0] < 300.4, `${mark.place[0]} mm`)
   assert.ok(Math.abs(run.coordinateAt(0, mark.cycle) - mark.place[0]) <= 2 / 80, 'its pulses say the same')
   const lane = run.surroundings.lanes.find(({ name }) => name === 'X limit plus')
@@ -335,7 +335,7 @@ test('an emergency stop on a ramp says so, and a button without a world', () => 
     // The world's button bounces three times, the script's does not.
     assert.deepEqual([lane.begin, ...lane.states], how[0] === '--world' ? [0, 1, 0, 1, 0, 1, 0, 1] : [0, 1])
     assert.ok(Math.abs(run.seconds(lane.times[0]) - 0.4) < 0.001)
-    // The axis goes on on its ramp.
+    // The axis continues on its ramp.
     assert.ok(run.coordinateAt(0, run.cycles) > mark.place[0] + 0.5)
   }
 })
@@ -353,7 +353,7 @@ test('the feed hold button holds, and cycle start goes on', () => {
   assert.ok(held > 0.4 && held < 0.412, `${held} s: filter, and a look each 5 ms`)
   assert.ok(run.seconds(mark.until) > 0.9 && run.seconds(mark.until) < 0.912)
   const lane = run.surroundings.lanes.find(({ name }) => name === 'feed hold')
-  // Three bounces a change.
+  // Three bounces per change.
   assert.equal(lane.times.length, 2 * (1 + 2 * 3))
   assert.equal(activeAt(lane, 0.45 * run.clockHz), 1)
   assert.equal(run.surroundings.parted.length, 0)
@@ -371,7 +371,7 @@ test('where a weak motor loses steps, and how many', () => {
   assert.deepEqual(run.surroundings.parted.map(({ letter }) => letter), ['X'])
   assert.equal(x.lost, end.lost)
   assert.ok(Math.abs(x.most_lost) >= Math.abs(x.lost))
-  // In the second line, not in the slow first one; and by the curve more than two full steps from there on.
+  // In the second line, not in the slow first one; the curve shows more than two full steps from then on.
   const begun = run.surroundings.marks.find(({ parting }) => parting)
   assert.equal(begun.line, 3)
   assert.ok(Math.abs(run.surroundings.apartAt(0, begun.cycle - 0.02 * run.clockHz)) < 2 * 16 / 80)

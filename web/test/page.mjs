@@ -1,4 +1,4 @@
-// A report's file read without a browser.
+// Reads a report's file without a browser.
 import { execFileSync, spawnSync } from 'node:child_process'
 import { readFileSync } from 'node:fs'
 import { inflateSync } from 'node:zlib'
@@ -16,11 +16,11 @@ export function readPage(file) {
   return { bytes: html.length, streams, facts, run: new Run(streams, facts) }
 }
 
-// Standard output and error, and the exit status 0.
+// Returns standard output and error; the exit status must be 0.
 export function trammel(command, ...options) {
   return execFileSync(command, options, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28 })
 }
-// Of a run that is stopped: status 1, and what it says of it.
+// For a run that is stopped: the status must be 1; returns the messages.
 export function trammelStops(command, ...options) {
   const { status, stderr } = spawnSync(command, options, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] })
   if (status !== 1) throw new Error(`status ${status}: ${stderr}`)

@@ -12,10 +12,10 @@ const command = process.env.TRAMMEL
 const machine = join(process.env.TRAMMEL_EXAMPLES, 'first-machine.toml')
 let browser, server, address, wire
 const kSpeed = 0.25 * 60      // mm/s, the page's first choice on this machine
-const kAcceleration = 1000    // mm/s^2; a stop uses half of it at the least
+const kAcceleration = 1000    // mm/s^2; a stop uses at least half of it
 const kSilence = 0.3          // s
 
-// Between page and server; frozen, nothing passes and nothing is closed, as where a radio link fails.
+// A proxy between page and server. While frozen, it passes nothing and closes nothing, like a failed radio link.
 async function makeWire(port) {
   const sockets = new Set()
   const wire = { frozen: false }
@@ -41,7 +41,7 @@ async function makeWire(port) {
 }
 
 before(async () => {
-  // As root, in a container, there is no sandbox.
+  // As root in a container, there is no sandbox.
   browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox'] })
   server = spawn(command, ['panel', '--engine', 'model', '--machine', machine, '--world', 'default', '--listen', '127.0.0.1:0'])
   server.stderr.on('data', (text) => { server.said = (server.said ?? '') + text })
@@ -74,7 +74,7 @@ const until = (page, name) => page.waitForFunction((wanted) => window.panel.now.
 const place = async (page) => (await state(page)).axes.map(({ machine: at }) => at)
 const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds))
 const notes = (page) => page.locator('#notes').textContent()
-// Two looks that agree.
+// Two equal readings.
 async function standing(page) {
   await until(page, 'Idle')
   const before = await place(page)
@@ -90,8 +90,8 @@ async function arrow(page) {
   await page.keyboard.down('ArrowRight')
   return () => page.keyboard.up('ArrowRight')
 }
-// Holds for most of a second, and gives back where it was then. A host whose load keeps the browser from saying so for
-// 300 ms ends the jog: then once more.
+// Holds the button for most of a second; returns the position after that. If a loaded host keeps the browser from
+// sending for 300 ms, the jog ends, and the test holds it again.
 async function held(page, press, then = async () => {}) {
   for (let n = 0; n < 5; ++n) {
     await until(page, 'Idle')
@@ -127,7 +127,7 @@ test('without the token there is nothing', async () => {
   await page.close()
 })
 
-// A finger on a button; lifted by the function that it gives back.
+// Puts a finger on a button; returns the function that lifts it.
 async function touch(page, selector) {
   await page.locator(selector).scrollIntoViewIfNeeded()
   const box = await page.locator(selector).boundingBox()
@@ -141,7 +141,7 @@ test('a limit switch stops a jog; the alarm says why; recover and drive off; on 
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), 'no wider than the phone')
   const columns = await page.evaluate(() => new Set([...document.querySelectorAll('main > section')].map((section) => section.getBoundingClientRect().left)).size)
   assert.equal(columns, 1)
-  // Not homed: locked, and nothing jogs.
+  // Not homed: the machine is locked, and jogs have no effect.
   assert.equal((await state(page)).state, 'Alarm')
   assert.match(await page.locator('#alarm').textContent(), /Not homed/)
   assert.ok(await page.locator('#jog-X-plus').isDisabled())
@@ -152,7 +152,7 @@ test('a limit switch stops a jog; the alarm says why; recover and drive off; on 
   for (let n = 0; n < 5 && (await state(page)).state !== 'Alarm'; ++n) {
     await until(page, 'Idle')
     const lift = await touch(page, '#jog-X-minus')
-    // A loaded host ends it before the switch, or before the page has been looked at.
+    // A loaded host may end it before the switch, or before the page has been read.
     await page.waitForFunction(() => window.panel.now.jogger.jog, undefined, { timeout: 3000 }).catch(() => {})
     await page.waitForFunction(() => !window.panel.now.jogger.jog)
     await lift()
@@ -186,14 +186,14 @@ test('home, jog by a held key, a step, and a silent connection', async () => {
   const after = await standing(page)
   assert.ok(after[0] - before[0] < kSpeed * 0.5, `${before} to ${after}`)
   assert.equal(await page.locator('#work-X').textContent(), after[0].toFixed(3))
-  // A step goes its way alone.
+  // A step moves by its distance only.
   await page.locator('#step').selectOption('10')
   await page.locator('#jog-Y-plus').click()
   await until(page, 'Jog')
   const step = await standing(page)
   assert.ok(Math.abs(step[1] - after[1] - 10) < 0.02, `${after} to ${step}`)
   await page.locator('#step').selectOption('0')
-  // Nothing passes any more while the key is held.
+  // The link freezes while the key is held.
   const last = await held(page, () => arrow(page), async () => {
     wire.freeze(true)
     await pause(1500)
@@ -201,7 +201,7 @@ test('home, jog by a held key, a step, and a silent connection', async () => {
   })
   const stood = await standing(page)
   const far = stood[0] - last[0]
-  const most = kSpeed * (kSilence + kSpeed / kAcceleration + 0.2)  // 0.2 s: age of the last state, slices, a loaded host
+  const most = kSpeed * (kSilence + kSpeed / kAcceleration + 0.2)  // 0.2 s: last state's age, slices, load
   assert.ok(far > 0.1 * kSpeed && far < most, `${far} mm, ${most} mm at the most`)
   assert.match(await notes(page), /the page was silent for 300 ms/)
   assert.deepEqual(said, [])
@@ -230,7 +230,7 @@ test('zero, a program with hold and resume, overrides, stop', async () => {
   await page.waitForFunction(() => window.panel.now.state.program.phase === 'done', null, { timeout: 60000 })
   const end = await standing(page)
   assert.ok(Math.abs(end[0] - x) < 0.02 && Math.abs(end[1] - y) < 0.02, `${[x, y]} to ${end}`)
-  // Once more, and stopped.
+  // The same again, but stopped.
   await start(page)
   await page.waitForFunction(() => window.panel.now.state.program.line >= 3)
   await page.keyboard.press('Escape')

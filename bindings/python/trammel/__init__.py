@@ -1,7 +1,7 @@
 """The Trammel stepper-motion card from Python: driver, simulated card, interpolators.
 
-Positions and ways are in pulses, times in nanoseconds of card time (names that end in _ns) or in clocks of the card.
-One thread at a time uses a card; the request_... methods may be called from any thread while another one waits.
+Positions and distances are in pulses; times are in nanoseconds of card time (names that end in _ns) or in clocks of the
+card. Only one thread at a time may use a card, but any thread may call the request_... methods while another one waits.
 """
 
 from ._trammel import *  # noqa: F403

@@ -12,7 +12,7 @@ PRIMITIVES = {"ice40": ["SB_IO", "SB_PLL40_CORE"], "ecp5": ["EHXPLLL", "OFS1P3BX
 
 
 def files_of(board):
-    """The sources of a top beside those of the card."""
+    """The sources of a top, in addition to those of the card."""
     ours = [*(ROOT / "boards" / "rtl").glob("*.sv"), *(ROOT / "boards" / "rtl" / board.family).glob("*.sv")]
     stand_in = [ROOT / "boards" / "sim" / f"{name}.sv" for name in PRIMITIVES[board.family]]
     return [str(Path(f).relative_to(ROOT)) for f in [*sorted(ours), board.folder / f"{board.top}.sv", *stand_in]]

@@ -1,4 +1,4 @@
-"""Runs the targets of rtl/trammel.core and boards/trammel-boards.core by FuseSoC, with its build below build/.
+"""Runs the targets of rtl/trammel.core and boards/trammel-boards.core with FuseSoC; its files are below build/.
 
 The targets that place a board are only set up: scripts/boards builds bitstreams."""
 import re
@@ -9,18 +9,18 @@ from file_list import CORE, ROOT
 
 FUSESOC = ROOT / ".venv" / "bin" / "fusesoc"
 BOARDS = ROOT / "boards" / "trammel-boards.core"
-# Core: its targets that run; what each must call, how far it goes, and parameters.
+# Core: its targets that run, each with the tool that it must call, the options for the stages, and parameters.
 RUNS = {
     CORE: [("lint", "verilator", [], []), ("icarus", "iverilog", ["--build"], []),
            ("ports", "verilator", [], ["--AxiLite", "0", "--Wishbone", "2", "--Uart", "1", "--Spi", "1", "--PathCommands", "1"])],
     BOARDS: [(f"lint-{board}", "verilator", [], []) for board in ("hx8k", "ulx3s", "colorlight-5a-75b")],
 }
-# Targets of the boards that are set up, and the placer that they call.
+# Targets of the boards that are only set up, and the placer of each.
 SETS_UP = {"hx8k": "nextpnr-ice40", "ulx3s": "nextpnr-ecp5", "colorlight-5a-75b": "nextpnr-ecp5"}
 
 
 def fusesoc(name, target, how, parameters):
-    """What FuseSoC says, and whether it went through."""
+    """FuseSoC's output, and whether it succeeded."""
     command = [FUSESOC, "--cores-root", "rtl", "--cores-root", "boards", "run", "--clean", "--build-root", "build/fusesoc", "--target",
                target, *how, name, *parameters]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -28,7 +28,7 @@ def fusesoc(name, target, how, parameters):
 
 
 def run(name, target, tool, how, parameters):
-    """The complaint about one target; empty when it went through."""
+    """The complaint about one target; empty on success."""
     said, good = fusesoc(name, target, how, parameters)
     if not good or not re.search(rf"^{tool} ", said, re.M):
         return f"FuseSoC's target {target} of {name} fails:\n{said}"
@@ -36,7 +36,7 @@ def run(name, target, tool, how, parameters):
 
 
 def set_up(name, target, placer):
-    """The same of a target that is only set up."""
+    """The same for a target that is only set up."""
     said, good = fusesoc(name, target, ["--setup"], [])
     makefile = ROOT / "build" / "fusesoc" / name.replace(":", "_") / target / "Makefile"
     if not good or not makefile.exists() or f" {placer} " not in Path(makefile).read_text():

@@ -9,18 +9,18 @@ from file_list import ROOT, sources
 PAGE = ROOT / "docs" / "reference" / "integration.md"
 BUILD = ROOT / "build" / "integration"
 TOP, CARD = "my_machine", "trammel_card"
-AXES, PINS = 3, 4  # of the template: its axes; its inputs, and its outputs
+AXES, PINS = 3, 4  # axes of the template; its inputs, and also its outputs
 
 
 def width(text):
-    """Bits of a port as the table has them, such as `2 Axes + 1`, for the template's axes and pins."""
+    """Evaluates a width of the table, such as `2 Axes + 1`, for the template's axes and pins."""
     terms = (term.split() for term in text.split("+"))
     names = {"Axes": AXES, "Inputs": PINS, "Outputs": PINS}
     return sum(math.prod(names.get(word) or int(word) for word in term) for term in terms)
 
 
 def table_complaints(page):
-    """What the port table and the parameter table lack or have too much."""
+    """Missing and superfluous rows of the port table and the parameter table."""
     modules = json.loads((BUILD / "ports.json").read_text())["modules"]
     # With parameters the name is $paramod\name\values or $paramod$hash\name.
     card = next(m for name, m in modules.items() if CARD in name.split("\\"))

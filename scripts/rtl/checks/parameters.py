@@ -1,7 +1,8 @@
-"""Shows that Verilator, Yosys, Icarus and slang stop at impossible parameters of the card, and take the extreme ones.
+"""Checks that Verilator, Yosys, Icarus and slang reject illegal parameters of the card, and accept the extreme legal
+ones.
 
-The RTL stops them by an instance of a module that does not exist and whose name is the message; `$error` will not do,
-because Icarus 11 refuses it in a generate block even where it is not reached."""
+To reject them, the RTL instantiates a module that does not exist and whose name is the message. It cannot use `$error`,
+because Icarus 11 refuses that in a generate block even if it is not reached."""
 from concurrent.futures import ThreadPoolExecutor
 from itertools import cycle
 
@@ -103,7 +104,8 @@ CASES = [
 
 
 def judge(case):
-    """The complaints about one case. Illegal values also make vectors that a linter warns of."""
+    """The complaints about one case. Linter warnings are off for illegal values, because these also make odd
+    vectors."""
     top, text, message = case
     wrong = []
     for reader, command in readers.commands(top, parameters=text.split(), warnings=message is None).items():

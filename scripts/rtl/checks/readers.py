@@ -7,8 +7,8 @@ from file_list import ROOT, sources
 def commands(top, own=(), parameters=(), warnings=True, waivers=(), last=""):
     """The command of each reader for a module of the card, or for one in the files `own` beside the card's.
 
-    parameters: NAME=VALUE of that module. Without `warnings` a linter's warnings do not stop it before the messages of
-    impossible parameters. `last` is what Yosys does at the end."""
+    parameters: NAME=VALUE of that module. Without `warnings`, a linter's warnings do not stop it before it reports
+    impossible parameters. `last` has commands that Yosys runs at the end."""
     every = [*sources(), *own]
     lint = ["-Wall", "rtl/lint/waivers.vlt", *waivers] if warnings else ["-Wno-lint", "-Wno-fatal"]
     set_parameters = "".join("chparam -set {} {} ".format(*p.split("=")) + f"{top}; " for p in parameters)
@@ -22,6 +22,6 @@ def commands(top, own=(), parameters=(), warnings=True, waivers=(), last=""):
 
 
 def run(command):
-    """What a reader prints, and whether it went through."""
+    """The output of a reader, and whether it succeeded."""
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     return done.stdout + done.stderr, done.returncode == 0

@@ -1,7 +1,8 @@
-"""Lists every input pin of a card with all its ports, and fails on one that may change at any time and has no synchroniser:
-two flip-flops, one right after the other, both marked async_reg, with nothing else on the pin and between them.
+"""Lists every input pin of a card with all its ports. Fails when an asynchronous input has no synchroniser: two
+consecutive flip-flops, both marked async_reg, with no other load on the pin or between them.
 
-Which inputs come from the card's own clock, or stand still, is said here; every other pin needs one."""
+SYNCHRONOUS and STRAPS name the inputs of the card's clock and the constant ones; every other pin needs a
+synchroniser."""
 import json
 import subprocess
 import tempfile
@@ -11,14 +12,14 @@ from file_list import ROOT, sources
 
 TOP = "card_with_ports"
 PARAMETERS = "AxiLite=1 Wishbone=1 Uart=1 Spi=1 PathCommands=1 EmergencyStop=1 Axes=1"
-# A reset, and buses of the card's clock; straps.
+# Clock, reset, and buses of the card's clock; straps.
 SYNCHRONOUS = {"clk_i", "rst_i", "awvalid_i", "awaddr_i", "wvalid_i", "wdata_i", "wstrb_i", "bready_i", "arvalid_i", "araddr_i",
                "rready_i", "wishbone_i"}
 STRAPS = {"clock_hz_i", "idle_level_i", "output_idle_i", "emergency_stop_level_i"}
-# Sets a latch beside its synchroniser, without a clock.
+# Inputs that also set a latch without a clock, in addition to their synchroniser.
 LATCHES = {"emergency_stop_i"}
 FLIP_FLOPS = ("$dff", "$sdff")
-# A break that the check must find: logic between the two flip-flops.
+# A seeded bug that the check must find: logic between the two flip-flops.
 SEED = ("rtl/host/uart/uart_port.sv", "rx_second_q <= rx_first_q;", "rx_second_q <= rx_first_q & rx_i;")
 
 
@@ -45,7 +46,8 @@ class Card:
                         self.readers.setdefault(bit, []).append((cell, port, place))
 
     def flip_flop(self, bit, latches=False):
-        """What the one flip-flop that reads the bit shows, when it is marked; else None. Of a pin that `latches`, gates read it, too."""
+        """Output of the only flip-flop that reads the bit, if it is marked; otherwise None. With `latches`, gates may
+        read the bit, too."""
         readers = self.readers.get(bit, [])
         if latches:
             readers = [reader for reader in readers if reader[0]["type"] in FLIP_FLOPS]
@@ -63,7 +65,8 @@ class Card:
 
 
 def without_synchroniser(seed=None):
-    """The pins that lack one. With `seed`, a file and two texts, as if the first text read as the second in that file."""
+    """The pins without a synchroniser. `seed`, a file and two texts, replaces the first text in that file by the
+    second."""
     files = sources()
     with tempfile.TemporaryDirectory() as folder:
         if seed:

@@ -1,4 +1,4 @@
-"""Tests of scripts/mutate: mutants known to live or to be killed, entries that are wrong, judges that hang or crash."""
+"""Tests of scripts/mutate: mutants that are known to live or to be killed, wrong entries, judges that hang or crash."""
 
 import contextlib
 import csv
@@ -16,7 +16,7 @@ from mutation.instrument import Instrumenter, Mutant
 BUILD = Path(os.environ["SELFTEST_BUILD"])
 SOURCE = Path(__file__).with_name("selftest_counter.sv")
 
-# All that can go unseen: what nothing reads, and a state that is left as the right one is.
+# All mutants that no test can see: unused signals, and a state whose exit equals that of the right one.
 LIVING = {
     ("unseen_q <= count_o + 4'd1", ""),
     ("unseen_q <= count_o + 4'd1", "unseen_q <= count_o - 4'd1"),

@@ -1,12 +1,12 @@
-// Jogging by buttons and keys. While one is held the page says so every 100 ms; the server ends the jog when it has not
-// heard this for 300 ms.
+// Jogging by buttons and keys. While one is held, the page sends a message every 100 ms; the server ends the jog when
+// it has received none for 300 ms.
 import { byId, make } from '../dom.js'
 
 const kSay = 100  // ms
 const kSteps = [0, 0.01, 0.1, 1, 10]
 const kPercents = [1, 5, 10, 25, 50, 100]
 const kKeys = { ArrowLeft: ['X', -1], ArrowRight: ['X', 1], ArrowDown: ['Y', -1], ArrowUp: ['Y', 1], PageDown: ['Z', -1], PageUp: ['Z', 1] }
-// Places in the pad: column, row.
+// Positions in the pad: column, row.
 const kPlaces = { 'X-1': [1, 2], X1: [3, 2], Y1: [2, 1], 'Y-1': [2, 3], Z1: [4, 1], 'Z-1': [4, 3] }
 
 export class Jogger {
@@ -39,7 +39,7 @@ export class Jogger {
       const speed = Math.min(...this.axes.filter(({ unit }) => unit === 'mm').map((axis) => axis.max_velocity_per_min)) * percent / 100
       return make('option', { value: percent, selected: percent === 25 }, Number.isFinite(speed) ? `${percent} % (${Math.round(speed)} mm/min)` : `${percent} %`)
     }))
-    // Arrow keys shall jog again, not change the choice.
+    // Takes the focus away, so that arrow keys jog and do not change the selection.
     for (const id of ['step', 'percent']) byId(id).addEventListener('change', ({ target }) => target.blur())
   }
   listen(button, index, way) {
@@ -58,7 +58,7 @@ export class Jogger {
     })
     button.addEventListener('keyup', (event) => { if (event.key === 'Enter') this.letGo(button) })
   }
-  // Whether the key is one that jogs.
+  // Whether the key is a jog key.
   keyDown(event) {
     if (!kKeys[event.key] || !byId('keys').checked) return false
     const [letter, way] = kKeys[event.key]
@@ -79,7 +79,7 @@ export class Jogger {
     const timer = setInterval(() => { if (!this.link.send('held', { id })) this.end() }, kSay)
     this.jog = { id, by, button, timer, step }
   }
-  // A step goes on to its end; a jog without distance ends here.
+  // A step continues to its end; a jog without distance ends here.
   letGo(by = null) {
     if (!this.jog || (by !== null && this.jog.by !== by) || this.jog.step !== 0) return
     this.link.send('release', { id: this.jog.id })
@@ -91,7 +91,7 @@ export class Jogger {
     this.jog.button.classList.remove('held')
     this.jog = null
   }
-  // The server's word: jogs that it has taken and that have ended, or that it has refused.
+  // Handles the server's messages about jogs that it has accepted, that have ended, or that it has refused.
   state({ jog, jog_taken: taken }) {
     if (this.jog && taken >= this.jog.id && jog !== this.jog.id) this.end()
   }

@@ -1,13 +1,13 @@
-// The connection to the server: messages out, states in. After a break it connects again by itself; nothing that moves
-// the machine is sent then.
+// The connection to the server: it sends messages and receives states. After a break it reconnects automatically, but
+// sends nothing that moves the machine.
 const kRetry = 1000      // ms
-const kLongest = 65536   // characters in a part of a program
+const kLongest = 65536   // most characters in a part of a program
 
 export class Link {
   // on: { hello, state, change(text, bad) }
   constructor(on) {
     this.on = on
-    this.clock = 0  // of the server, ms, in the last state
+    this.clock = 0  // the server's clock in the last state, ms
     this.replaced = false
   }
   get open() { return this.socket?.readyState === WebSocket.OPEN }
@@ -35,7 +35,7 @@ export class Link {
       this.on.state(state)
     }
   }
-  // False: there is no connection.
+  // False if there is no connection.
   send(what, values = {}) {
     if (!this.open) return false
     this.socket.send(JSON.stringify({ do: what, clock: this.clock, ...values }))
@@ -45,7 +45,7 @@ export class Link {
     this.send('load', { text: name })
     for (let at = 0; at < text.length;) {
       let end = Math.min(at + kLongest, text.length)
-      // Both halves of a surrogate pair go together.
+      // The two halves of a surrogate pair stay together.
       if (end < text.length && /[\ud800-\udbff]/.test(text[end - 1])) --end
       this.send('part', { text: text.slice(at, end) })
       at = end

@@ -1,4 +1,4 @@
-// The panel: what the server tells, and what buttons and keys ask of it.
+// The panel: shows the server's states, and sends it the requests of buttons and keys.
 import { byId, make } from '../dom.js'
 import { fixed, grouped } from '../format.js'
 import { Program } from '../program.js'
@@ -7,7 +7,7 @@ import { Jogger } from './jog.js'
 import { Link } from './link.js'
 import { Path } from './path.js'
 
-const kOld = 600     // ms without a state, until the page says so
+const kOld = 600     // ms without a state, after which the page says so
 const kNotes = 100
 const kMoves = ['Run', 'Jog', 'Home']
 const kFeedChanges = [-10, -1, 0, 1, 10]
@@ -99,7 +99,7 @@ function showProgram(program) {
   now.lines?.highlight(program.line)
 }
 
-// The server has the text, whichever page has sent it.
+// The text comes from the server, because any page may have sent it.
 async function fetchProgram(version) {
   now.program = version
   now.lines = null
@@ -146,7 +146,7 @@ async function choose({ target }) {
   if (file) link.sendProgram(file.name, await file.text())
 }
 
-// Space holds what moves, and is its usual self where nothing does; Escape stops always.
+// Space holds motion; without motion it has its usual effect. Escape always stops.
 function keyDown(event) {
   const { target } = event
   const types = target.matches?.('select, textarea, input:not([type="checkbox"]):not([type="file"])')
@@ -170,7 +170,7 @@ function listen() {
   byId('when-gone').addEventListener('change', ({ target }) => link.send('when_gone', { hold: target.checked }))
   byId('feed-buttons').append(...kFeedChanges.map((change) => make('button', { type: 'button', 'aria-label': change ? `Feed override ${change > 0 ? 'plus' : 'minus'} ${Math.abs(change)} %` : 'Feed override 100 %', onclick: () => link.send('feed', { change }) }, change ? `${change > 0 ? '+' : '−'}${Math.abs(change)}` : '100 %')))
   byId('rapid-buttons').append(...kRapids.map(([percent, change]) => make('button', { type: 'button', 'aria-label': `Rapid override ${percent} %`, onclick: () => link.send('rapid', { change }) }, `${percent} %`)))
-  // Before the buttons that have the focus.
+  // Handled before the button with the focus.
   window.addEventListener('keydown', keyDown, true)
   window.addEventListener('keyup', (event) => now.jogger?.keyUp(event), true)
   byId('theme').addEventListener('click', () => { setTheme(!isDark()); now.path?.draw() })

@@ -1,9 +1,9 @@
-// The path that the tool has made, seen along an axis of the machine.
+// The path of the tool so far, seen along an axis of the machine.
 import { contextOf, make, sizeCanvas } from '../dom.js'
 import { ticks } from '../format.js'
 import { colour } from '../theme.js'
 
-const kMost = 40000  // points; beyond, every second one of the older half is left out
+const kMost = 40000  // points; above that, every second point of the older half is dropped
 const kViews = { Top: ['X', 'Y'], Front: ['X', 'Z'], Side: ['Y', 'Z'] }
 
 export class Path {
@@ -38,7 +38,7 @@ export class Path {
   draw() {
     if (!this.frame) this.frame = requestAnimationFrame(() => { this.frame = 0; this.paint() })
   }
-  // Ends of what is shown, by the two axes: path, tool, and soft limits that are not far off.
+  // Bounds of the view for the two axes: path, tool, and soft limits that are near.
   box([a, b]) {
     const ends = [a, b].map((n) => {
       const { machine, work } = this.axes[n]
