@@ -95,10 +95,10 @@ class Merge(InAFolder):
 
 
 JUNIT = """<testsuite>
-<testcase name="gcode.A" status="run"><properties><property name="cmake_labels" value="gcode;slow"/></properties></testcase>
+<testcase name="gcode.A" status="run"/>
 <testcase name="gcode.B" status="fail"/>
-<testcase name="seeded_bug.C" status="run"><properties><property name="cmake_labels" value="lockstep;seeded_bug"/></properties></testcase>
-<testcase name="seeded_bug.F" status="fail"><properties><property name="cmake_labels" value="seeded_bug"/></properties></testcase>
+<testcase name="seeded_bug.C" status="run"/>
+<testcase name="seeded_bug.F" status="fail"/>
 <testcase name="panel.D" status="notrun"/><testcase name="E" status="disabled"/>
 </testsuite>"""
 
