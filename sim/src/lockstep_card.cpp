@@ -115,6 +115,7 @@ void LockstepCard::compare(Batch& batch) {
   const std::size_t same = batch.same.get();
   const std::size_t compared = std::min(same + 1, batch.clocks);
   cycles_ += compared;
+  lockstep::count_compared(compared);
   comparisons_ += compared * signals_;
   if (same == batch.clocks) return;
   // Events logged at cycle `cycles_ - 1` or earlier came before the clock of the difference.

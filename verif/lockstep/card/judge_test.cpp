@@ -220,12 +220,14 @@ TEST_P(CardJudgeThreads, EverySignalIsComparedInEveryCycle) {
     options.rtl_thread = GetParam();
     const auto card = make_engine(options);
     const std::uint64_t begin = card->cycles();
+    const std::uint64_t compared_before = lockstep::compared();
     card->wait(3000);
     card->read(card_map::reg::kStatus);
     card->wait(3000);
     EXPECT_GT(card->cycles() - begin, 6000U);
     EXPECT_EQ(*card->lockstep_cycles(), card->cycles() - begin);
     EXPECT_EQ(card->comparisons(), (card->cycles() - begin) * (26 + axes));
+    EXPECT_EQ(lockstep::compared() - compared_before, card->cycles() - begin);
   }
 }
 

@@ -58,8 +58,8 @@ class EventLog {
 [[noreturn]] void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed,
                        const std::vector<Difference>& differences, const std::string& events);
 
-// Adds to the sum of the clocks that the process's Checkers have compared; the test executable prints it at its end.
-// From any thread.
+// Adds to the sum of the clocks that the process has compared, in Checkers and cards. Test executables print it at
+// their end. From any thread.
 void count_compared(std::uint64_t cycles);
 std::uint64_t compared();
 
