@@ -227,12 +227,12 @@ def _not_built(command):
 
 def _command(command):
     count = command.count
-    top = "0" if count.maximum == 0 else "2^40 - 1"
+    count_range = f", {count.minimum} to 2^40 - 1{' ' + count.unit if count.unit else ''}" if count.maximum else ""
     lines = [
         f"\n## {command.name}\n\n{_not_built(command)}{command.brief}\n\n",
         f"- Opcode {command.opcode}, {_destination(command)}.\n",
         f"- Axis mask: {_mask(command)}.\n",
-        f"- Count `{count.name}`, {count.minimum} to {top}{' ' + count.unit if count.unit else ''}: {count.brief}.\n",
+        f"- Count `{count.name}`{count_range}: {count.brief}.\n",
     ]
     if command.engine:
         lines.insert(2, f"- Needs the engine `{command.engine}`.\n")

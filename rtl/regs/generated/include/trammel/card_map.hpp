@@ -1033,18 +1033,18 @@ constexpr std::string_view reason_text(std::uint8_t reason) {
 }
 
 enum class Opcode : std::uint8_t {
-  Line = 1,        // A straight line of the masked axes over `count` feed ticks.
-  Arc = 2,         // An arc of a circle or an axis-parallel ellipse on the deviation accumulator.
-  ArcChord = 3,    // An arc of a circle in chords, further axes along lines (helices), on the arc generator.
-  Feed = 16,       // One piece of the feed profile.
-  Dwell = 32,      // Barrier: both queues wait for each other, then for `count` clocks of real time.
-  End = 33,        // Barrier: end of the program; latches STATUS.ended.
-  Output = 34,     // Sets and clears outputs with the last tick of the path before it.
-  Mark = 35,       // Counts MARKS and latches the MARK area with the last tick of the path before it.
-  WaitInput = 36,  // Barrier: both queues wait for each other, then for an input or for `count` clocks.
-  Probe = 37,      // Arms the probe for the paths up to PROBE_END, once no path runs.
-  ProbeEnd = 38,   // Barrier: end of the probing paths; where the probe has tripped it waits for CONTROL.probe_clear.
-  Pwm = 39,        // Sets the duty of a PWM channel with the last tick of the path before it.
+  Line = 1,      // A straight line of the axes in the mask over N feed ticks.
+  Arc = 2,       // An arc of a circle or of an axis-parallel ellipse, on the deviation accumulator.
+  ArcChord = 3,  // An arc of a circle as chords, on the arc generator. Further axes move along lines (helices).
+  Feed = 16,     // A piece of the feed profile.
+  Dwell = 32,   // Barrier: both queues wait for each other, then for `count` clocks. A hold does not stretch this time.
+  End = 33,     // Barrier: end of the program. Sets STATUS.ended.
+  Output = 34,  // Sets and clears outputs at the last tick of the preceding path.
+  Mark = 35,    // Increments MARKS and latches the area MARK at the last tick of the preceding path.
+  WaitInput = 36,  // Barrier: both queues wait for each other, then until an input has a level, or for `count` clocks.
+  Probe = 37,      // Waits until no path runs, then arms the probe for the paths up to PROBE_END.
+  ProbeEnd = 38,   // Barrier: end of the probing paths. If the probe has tripped, it waits for CONTROL.probe_clear.
+  Pwm = 39,        // Sets the duty of a PWM channel at the last tick of the preceding path.
 };
 
 inline constexpr std::size_t kMaxFields = 11;
