@@ -57,24 +57,27 @@ inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threa
 
 // Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).
 namespace engine {
-inline constexpr std::uint32_t kLines = 0;           // Lines: pulse generators; on every card.
-inline constexpr std::uint32_t kAccumulator = 1;     // ARC: deviation accumulator, 4 directions.
-inline constexpr std::uint32_t kAccumulator8 = 2;    // The accumulator's 8-direction step rule.
-inline constexpr std::uint32_t kArcGenerator = 3;    // ARC_CHORD: arc generator.
-inline constexpr std::uint32_t kJerk = 4;            // Jerk in the feed generator.
-inline constexpr std::uint32_t kDirectMode = 5;      // Direct mode.
-inline constexpr std::uint32_t kUnderrunHold = 6;    // Hold on the path when the queues run dry.
-inline constexpr std::uint32_t kPathCommands = 7;    // OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END; inputs and outputs.
-inline constexpr std::uint32_t kStreaming = 8;       // Position streaming.
-inline constexpr std::uint32_t kClasses = 9;         // Classes of pieces: ratios for rapid and fixed.
-inline constexpr std::uint32_t kWatermarks = 10;     // Watermarks of the queues.
-inline constexpr std::uint32_t kMachineInputs = 11;  // Inputs with filters and roles; limits, drive faults, feed hold.
-inline constexpr std::uint32_t kCaptures = 12;       // Captures of inputs' edges.
-inline constexpr std::uint32_t kEmergencyStop = 13;  // A pin for the emergency stop.
-inline constexpr std::uint32_t kEnables = 14;     // Roles of outputs: drive enable, brake, charge pump, card healthy.
-inline constexpr std::uint32_t kSoftLimits = 15;  // Soft limits: comparators of the position at both ends of each axis.
-inline constexpr std::uint32_t kCaptureFifo = 16;  // A queue of 16 captures.
-inline constexpr std::uint32_t kPwm = 17;          // PWM on two channels of outputs, and the command PWM.
+inline constexpr std::uint32_t kLines = 0;         // Lines on the pulse generators; on every card.
+inline constexpr std::uint32_t kAccumulator = 1;   // ARC on the deviation accumulator, in 4 directions.
+inline constexpr std::uint32_t kAccumulator8 = 2;  // Step rule of the accumulator with 8 directions.
+inline constexpr std::uint32_t kArcGenerator = 3;  // ARC_CHORD on the arc generator.
+inline constexpr std::uint32_t kJerk = 4;          // Jerk in the feed generator.
+inline constexpr std::uint32_t kDirectMode = 5;    // Direct mode.
+inline constexpr std::uint32_t kUnderrunHold = 6;  // Hold along the path before the queues run dry (under-run hold).
+inline constexpr std::uint32_t kPathCommands =
+    7;  // Commands OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END; inputs and outputs.
+inline constexpr std::uint32_t kStreaming = 8;  // Position streaming.
+inline constexpr std::uint32_t kClasses =
+    9;  // Classes of feed pieces: own ratios for rapid and fixed pieces, slew shifts.
+inline constexpr std::uint32_t kWatermarks = 10;  // Watermarks of the queues.
+inline constexpr std::uint32_t kMachineInputs =
+    11;  // Filters and roles of inputs; limits, drive faults, probe and tool setter as causes of a stop; feed hold.
+inline constexpr std::uint32_t kCaptures = 12;       // Captures of edges of inputs.
+inline constexpr std::uint32_t kEmergencyStop = 13;  // Pin for the emergency stop.
+inline constexpr std::uint32_t kEnables = 14;      // Roles of outputs: drive enable, brake, charge pump, card healthy.
+inline constexpr std::uint32_t kSoftLimits = 15;   // Soft limits at both ends of each axis.
+inline constexpr std::uint32_t kCaptureFifo = 16;  // Queue of 16 captures.
+inline constexpr std::uint32_t kPwm = 17;          // Two channels of PWM on outputs, and the command PWM.
 }  // namespace engine
 
 // The same as masks.
@@ -795,40 +798,41 @@ inline constexpr std::uint32_t kDescriptorTable = 0x100;  // byte address of the
 inline constexpr std::uint32_t kDescriptorSlots = 32;     // the ending one included
 
 namespace unit {
-inline constexpr std::uint8_t kTimeBase = 1;     // Share of clocks that are enabled: ratio, slew, hold.
-inline constexpr std::uint8_t kStopControl = 2;  // Causes of a stop, and the reaction to each.
-inline constexpr std::uint8_t kQueues = 3;       // Geometry queue and feed queue.
-inline constexpr std::uint8_t kFeedGenerator =
-    4;  // Rate, acceleration and jerk of feed pieces; from 1.1 on silent pieces, which run at any ratio from 1.2 on.
-inline constexpr std::uint8_t kAxes = 5;  // Pulse generator, step shaper and position counter of each axis.
+inline constexpr std::uint8_t kTimeBase = 1;       // Time base: the ratio of clocks that are enabled, slew, hold.
+inline constexpr std::uint8_t kStopControl = 2;    // Causes of a stop and their reactions.
+inline constexpr std::uint8_t kQueues = 3;         // Geometry queue and feed queue.
+inline constexpr std::uint8_t kFeedGenerator = 4;  // Rate, acceleration and jerk of feed pieces. From 1.1 on also
+                                                   // silent pieces; from 1.2 on they run at any ratio.
+inline constexpr std::uint8_t kAxes = 5;           // Pulse generator, step shaper and position counter of each axis.
 inline constexpr std::uint8_t kSnapshots =
-    6;  // Areas of latched values: SNAP, STOP; with path commands also PROBE and MARK.
-inline constexpr std::uint8_t kHostPorts = 7;     // Ports that a host may come by.
-inline constexpr std::uint8_t kAccumulator = 8;   // Deviation accumulator: circles, ellipses (ARC).
-inline constexpr std::uint8_t kArcGenerator = 9;  // Arc generator: circles and helices in chords (ARC_CHORD).
+    6;  // Areas of latched values: SNAP and STOP, with path commands also PROBE and MARK.
+inline constexpr std::uint8_t kHostPorts = 7;     // Host ports.
+inline constexpr std::uint8_t kAccumulator = 8;   // Deviation accumulator: circles and ellipses (ARC).
+inline constexpr std::uint8_t kArcGenerator = 9;  // Arc generator: circles and helices as chords (ARC_CHORD).
 inline constexpr std::uint8_t kDirectMode =
-    10;  // One-shot lines: frequency, count and direction of each axis, length, START.
-inline constexpr std::uint8_t kUnderrunHold = 11;  // Hold on the path before the queues run dry.
-inline constexpr std::uint8_t kPathCommands = 12;  // OUTPUT, MARK, WAIT_INPUT, PROBE and PROBE_END.
+    10;  // Direct moves: frequency, count and direction of each axis, length, START.
+inline constexpr std::uint8_t kUnderrunHold = 11;  // Hold along the path before the queues run dry.
+inline constexpr std::uint8_t kPathCommands = 12;  // Commands OUTPUT, MARK, WAIT_INPUT, PROBE and PROBE_END.
 inline constexpr std::uint8_t kInputs = 13;        // Inputs with synchroniser and polarity.
 inline constexpr std::uint8_t kOutputs =
-    14;  // Outputs, with levels at rest; from 1.1 on with levels at the cause of a stop.
-inline constexpr std::uint8_t kPositionStreaming = 15;  // A line for each period of a host that streams positions.
+    14;  // Outputs with safe levels at rest. From 1.1 on also with safe levels at the cause of a stop.
+inline constexpr std::uint8_t kPositionStreaming = 15;  // Position streaming: the host sends one line per period.
 inline constexpr std::uint8_t kWatchdog =
-    16;  // Watchdog over the host; from 1.1 on also over the link of the session that writes (LINK_TIMEOUT).
-inline constexpr std::uint8_t kRoles = 17;          // Filter of each input, and roles: masks of inputs.
-inline constexpr std::uint8_t kCaptures = 18;       // Captures: time and positions of the edges of inputs, an area of
-                                                    // latched values each; the probe's edge likewise.
-inline constexpr std::uint8_t kEmergencyStop = 19;  // Emergency stop: a pin with a latch that needs no clock.
+    16;  // Watchdog of the host. From 1.1 on also a watchdog of the link to the writing session (LINK_TIMEOUT).
+inline constexpr std::uint8_t kRoles = 17;     // Filters of the inputs, and masks of the inputs that have a role.
+inline constexpr std::uint8_t kCaptures = 18;  // Captures: time and positions at edges of inputs, one area of latched
+                                               // values per unit. The PROBE area is latched in the same way.
+inline constexpr std::uint8_t kEmergencyStop = 19;  // Emergency stop: a pin with an asynchronous latch.
 inline constexpr std::uint8_t kLimits =
-    20;  // Limit switches, drive faults, probe and tool setter as causes of a stop; feed hold and cycle start.
-inline constexpr std::uint8_t kPlace =
-    21;  // The machine's place, which outlives the host: valid and homed axes, scales; zeros beside the axes' settings.
-inline constexpr std::uint8_t kEnables =
-    22;  // Drive enable, brake, charge pump and card healthy: roles of outputs, and the sequence of the drives.
+    20;  // Limit switches, drive faults, probe and tool setter as causes of a stop; feed hold and cycle start buttons.
+inline constexpr std::uint8_t kPlace = 21;  // Place of the machine, which the card keeps when the host restarts: valid
+                                            // and homed axes, scales. MACHINE_ZERO is among the settings of the axes.
+inline constexpr std::uint8_t kEnables = 22;  // Drive enable, brake, charge pump and card healthy: roles of outputs,
+                                              // and the sequence of drive enable and brake.
 inline constexpr std::uint8_t kSoftLimits =
-    23;  // Soft limits: comparators of the position, beside the axes' settings; SOFT_LIMITS switches them on.
-inline constexpr std::uint8_t kPwm = 24;  // Pulse width modulation on outputs: channels, whose duty commands set (PWM).
+    23;  // Soft limits of the positions. The limits are among the settings of the axes; SOFT_LIMITS switches them on.
+inline constexpr std::uint8_t kPwm =
+    24;  // Pulse width modulation of outputs. The command PWM sets the duty of a channel.
 }  // namespace unit
 
 // Units on the load bus, of their first instance.
