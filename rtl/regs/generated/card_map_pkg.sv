@@ -8,51 +8,51 @@ package card_map_pkg;
   localparam int FRACTION_BITS = 40;
   // Fraction bits of the feed generator's rate, acceleration and jerk
   localparam int RATE_FRACTION_BITS = 64;
-  // Enabled clocks from one addition of acceleration and jerk to the next
+  // Enabled clocks from one update of rate and acceleration to the next
   localparam int UPDATE_CLOCKS = 32;
-  // Clocks that swaps of the feed generator are apart at least
+  // Minimum number of clocks between two swaps of the feed generator
   localparam int FEED_SWAP_CLOCKS = 24;
-  // Fraction bits of the time base's ratio as the registers have it
+  // Fraction bits of the time base's ratio in the registers
   localparam int RATIO_FRACTION_BITS = 16;
-  // Fraction bits of the time base's ratio inside, and of SLEW
+  // Fraction bits of the ratio inside the time base, and of SLEW
   localparam int SLEW_FRACTION_BITS = 28;
-  // Clocks from one move of the ratio to the next
+  // Clocks from one update of the ratio to the next
   localparam int SLEW_CLOCKS = 4;
-  // Feed ticks that the under-run hold keeps queued beyond what a stop takes
+  // Feed ticks that the under-run hold keeps queued in addition to those that a stop takes
   localparam int UNDERRUN_RESERVE_TICKS = 256;
-  // Clocks that the shaper adds to max(1, length) + space from pulse to pulse; one less for length 0
+  // Clocks that the step shaper adds to max(1, STEP_LENGTH) + STEP_SPACE from one leading edge to the next; one less if STEP_LENGTH is 0
   localparam int SHAPER_TURNOVER_CLOCKS = 6;
-  // Clocks that the shaper adds to space + hold + setup from trailing to leading edge at a reversal
+  // Clocks that the step shaper adds to STEP_SPACE + DIR_HOLD + DIR_SETUP from the trailing edge to the next leading edge at a reversal
   localparam int SHAPER_REVERSAL_CLOCKS = 12;
-  // Clocks to decode a line, without those for each axis
+  // Clocks for the decoding of a line, in addition to those per axis
   localparam int DECODE_CLOCKS = 8;
-  // Clocks to decode a line, for each of its axes
+  // Clocks for the decoding of a line, per axis of the line
   localparam int DECODE_AXIS_CLOCKS = 3;
-  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
+  // Minimum number of clocks between two path ticks of the deviation accumulator in 4 directions
   localparam int ACCUMULATOR_TICK_CLOCKS = 9;
-  // The same in 8 directions
+  // Minimum number of clocks between two path ticks of the deviation accumulator in 8 directions
   localparam int ACCUMULATOR_8_TICK_CLOCKS = 17;
-  // Clocks within which an arc begins once the accumulator is free
+  // Longest time from the clock in which the accumulator is free to the start of the next arc, in clocks
   localparam int ACCUMULATOR_HANDOVER_CLOCKS = 30;
-  // Fraction bits of a centre in ARC's deviation and gradients
+  // Fraction bits of the centre in the deviation and the gradients of ARC
   localparam int CENTRE_FRACTION_BITS = 8;
-  // Clocks from a feed tick to the path tick that it is
+  // Clocks from a feed tick to the same tick in the path domain
   localparam int PATH_DELAY_CLOCKS = 3;
-  // Clocks within which every access is answered with up to 4 axes
+  // Longest time until an access is answered, with up to 4 axes, in clocks
   localparam int ANSWER_CLOCKS = 500;
-  // Clocks within which every access is answered with 5 to 8 axes
+  // Longest time until an access is answered, with 5 to 8 axes, in clocks
   localparam int ANSWER_CLOCKS_8_AXES = 700;
-  // Flag of FEED beside its class: the ticks make no steps
+  // Flag of FEED: the ticks of the piece make no steps
   localparam int PIECE_SILENT = 4;
-  // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force
+  // Lowest bit of the slew shift in the flags of FEED: value of one doubling of SLEW
   localparam int PIECE_DOUBLING = 8;
-  // The most doublings of SLEW that a piece may have
+  // Largest slew shift of a piece
   localparam int MAX_SLEW_SHIFT = 3;
-  // Class of a feed piece: what the feed override slows down
+  // Class of a feed piece: motion at the programmed feed
   localparam int CLASS_FEED = 0;
-  // Class of a feed piece: rapid positioning, with a ratio of its own
+  // Class of a feed piece: rapid motion
   localparam int CLASS_RAPID = 1;
-  // Class of a feed piece: threading and the like, which a hold lets end
+  // Class of a feed piece: motion that a hold must not interrupt, such as threading; a hold waits for its end
   localparam int CLASS_FIXED = 2;
 
   // Bit numbers of the mask of engines: what is built in.

@@ -22,37 +22,43 @@ inline constexpr std::uint32_t kFractionBits = 40;  // Fraction bits of a pulse 
 inline constexpr std::uint32_t kRateFractionBits =
     64;  // Fraction bits of the feed generator's rate, acceleration and jerk
 inline constexpr std::uint32_t kUpdateClocks =
-    32;  // Enabled clocks from one addition of acceleration and jerk to the next
-inline constexpr std::uint32_t kFeedSwapClocks = 24;  // Clocks that swaps of the feed generator are apart at least
-inline constexpr std::uint32_t kRatioFractionBits =
-    16;  // Fraction bits of the time base's ratio as the registers have it
-inline constexpr std::uint32_t kSlewFractionBits = 28;  // Fraction bits of the time base's ratio inside, and of SLEW
-inline constexpr std::uint32_t kSlewClocks = 4;         // Clocks from one move of the ratio to the next
+    32;  // Enabled clocks from one update of rate and acceleration to the next
+inline constexpr std::uint32_t kFeedSwapClocks =
+    24;  // Minimum number of clocks between two swaps of the feed generator
+inline constexpr std::uint32_t kRatioFractionBits = 16;  // Fraction bits of the time base's ratio in the registers
+inline constexpr std::uint32_t kSlewFractionBits = 28;   // Fraction bits of the ratio inside the time base, and of SLEW
+inline constexpr std::uint32_t kSlewClocks = 4;          // Clocks from one update of the ratio to the next
 inline constexpr std::uint32_t kUnderrunReserveTicks =
-    256;  // Feed ticks that the under-run hold keeps queued beyond what a stop takes
+    256;  // Feed ticks that the under-run hold keeps queued in addition to those that a stop takes
 inline constexpr std::uint32_t kShaperTurnoverClocks =
-    6;  // Clocks that the shaper adds to max(1, length) + space from pulse to pulse; one less for length 0
+    6;  // Clocks that the step shaper adds to max(1, STEP_LENGTH) + STEP_SPACE from one leading edge to the next; one
+        // less if STEP_LENGTH is 0
 inline constexpr std::uint32_t kShaperReversalClocks =
-    12;  // Clocks that the shaper adds to space + hold + setup from trailing to leading edge at a reversal
-inline constexpr std::uint32_t kDecodeClocks = 8;      // Clocks to decode a line, without those for each axis
-inline constexpr std::uint32_t kDecodeAxisClocks = 3;  // Clocks to decode a line, for each of its axes
+    12;  // Clocks that the step shaper adds to STEP_SPACE + DIR_HOLD + DIR_SETUP from the trailing edge to the next
+         // leading edge at a reversal
+inline constexpr std::uint32_t kDecodeClocks = 8;  // Clocks for the decoding of a line, in addition to those per axis
+inline constexpr std::uint32_t kDecodeAxisClocks = 3;  // Clocks for the decoding of a line, per axis of the line
 inline constexpr std::uint32_t kAccumulatorTickClocks =
-    9;  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
-inline constexpr std::uint32_t kAccumulator8TickClocks = 17;  // The same in 8 directions
+    9;  // Minimum number of clocks between two path ticks of the deviation accumulator in 4 directions
+inline constexpr std::uint32_t kAccumulator8TickClocks =
+    17;  // Minimum number of clocks between two path ticks of the deviation accumulator in 8 directions
 inline constexpr std::uint32_t kAccumulatorHandoverClocks =
-    30;  // Clocks within which an arc begins once the accumulator is free
-inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a centre in ARC's deviation and gradients
-inline constexpr std::uint32_t kPathDelayClocks = 3;     // Clocks from a feed tick to the path tick that it is
-inline constexpr std::uint32_t kAnswerClocks = 500;  // Clocks within which every access is answered with up to 4 axes
+    30;  // Longest time from the clock in which the accumulator is free to the start of the next arc, in clocks
+inline constexpr std::uint32_t kCentreFractionBits =
+    8;  // Fraction bits of the centre in the deviation and the gradients of ARC
+inline constexpr std::uint32_t kPathDelayClocks = 3;  // Clocks from a feed tick to the same tick in the path domain
+inline constexpr std::uint32_t kAnswerClocks =
+    500;  // Longest time until an access is answered, with up to 4 axes, in clocks
 inline constexpr std::uint32_t kAnswerClocks8Axes =
-    700;                                          // Clocks within which every access is answered with 5 to 8 axes
-inline constexpr std::uint32_t kPieceSilent = 4;  // Flag of FEED beside its class: the ticks make no steps
+    700;  // Longest time until an access is answered, with 5 to 8 axes, in clocks
+inline constexpr std::uint32_t kPieceSilent = 4;  // Flag of FEED: the ticks of the piece make no steps
 inline constexpr std::uint32_t kPieceDoubling =
-    8;  // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force
-inline constexpr std::uint32_t kMaxSlewShift = 3;  // The most doublings of SLEW that a piece may have
-inline constexpr std::uint32_t kClassFeed = 0;     // Class of a feed piece: what the feed override slows down
-inline constexpr std::uint32_t kClassRapid = 1;    // Class of a feed piece: rapid positioning, with a ratio of its own
-inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threading and the like, which a hold lets end
+    8;  // Lowest bit of the slew shift in the flags of FEED: value of one doubling of SLEW
+inline constexpr std::uint32_t kMaxSlewShift = 3;  // Largest slew shift of a piece
+inline constexpr std::uint32_t kClassFeed = 0;     // Class of a feed piece: motion at the programmed feed
+inline constexpr std::uint32_t kClassRapid = 1;    // Class of a feed piece: rapid motion
+inline constexpr std::uint32_t kClassFixed =
+    2;  // Class of a feed piece: motion that a hold must not interrupt, such as threading; a hold waits for its end
 }  // namespace constant
 
 // Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).
