@@ -15,26 +15,29 @@ ACCESS_TEXT = {
 
 REGISTERS_HEAD = """# Registers
 
-A window of 4 KiB of 32-bit registers. Accesses are whole words at byte addresses that are multiples of 4; any other
-address is unknown, like one where nothing is. An access that is refused answers an error (SLVERR on AXI4-Lite), changes
-nothing and reads as 0; `REFUSAL` keeps the reason and the address of the first one of each port. What is wrong with an
-access is looked for in this order: `UNKNOWN_ADDRESS`; for reads `WRITE_ONLY`; for writes `READ_ONLY`, `PARTIAL_WRITE`,
-`BAD_VALUE` (a bit without meaning is set, or a limit is passed), then what the register itself asks for ([how the card
-behaves](behaviour.md)).
+The card has a window of 4 KiB of 32-bit registers. An access is a whole word at a byte address that is a multiple
+of 4. All other addresses, and those without a register, are unknown addresses. A refused access is answered with an
+error (SLVERR on AXI4-Lite), reads as 0 and changes nothing. `REFUSAL` of the port keeps reason and address of its first
+refusal. The card checks an access in this order: `UNKNOWN_ADDRESS`; for reads `WRITE_ONLY`; for writes `READ_ONLY`,
+`PARTIAL_WRITE`, `BAD_VALUE` (a reserved bit is set, or a field is out of range); then the conditions of the register
+itself ([how the card behaves](behaviour.md)).
 
-Registers of axes that the card lacks and of engines that are not built in (the column `engine`: see [units and
-engines](#units-and-engines); empty: on every card) are unknown addresses. For 257 clocks after reset (with
-machine inputs 355; with more than 4 axes and machine inputs or enables 483; with captures 451 or 615) the registers are being filled: accesses wait, but reads of live registers, of `FAULT` and of
-`REFUSAL` are answered at once.
+The column `engine` names the [engine](#units-and-engines) that a register needs; if it is empty, every card has the
+register. Registers of engines that are not built in, and of axes that the card lacks, are unknown addresses.
 
-The registers of the direct mode run downwards, axis n at 0xCF0 - 0x10 n, and `START` is the last register: on a card
-with n axes one block write of 4 n + 3 words, from `FREQUENCY_LO` of axis n - 1 to `START`, sets and starts a move.
+After reset the card fills its registers for 257 clocks (with machine inputs 355; with more than 4 axes and machine
+inputs or enables 483; with captures 451 or 615). Accesses wait meanwhile, except reads of live registers, of `FAULT`
+and of `REFUSAL`, which are answered at once.
+
+The registers of direct mode run downwards: those of axis n begin at 0xCF0 - 0x10 n, and `START` is the last register.
+One block write of 4 n + 3 words, from `FREQUENCY_LO` of axis n - 1 to `START`, sets up and starts a move on a card with
+n axes.
 """
 
 COMMANDS_HEAD = """# Commands
 
-A host writes commands to the queue port, the register `STREAM`. A command is a sequence of halfwords (16 bits), sent
-in 32-bit words, the lower halfword first:
+A host writes commands to the register `STREAM`. A command is a sequence of halfwords (16 bits), sent in 32-bit words,
+the lower halfword first:
 
 | halfword | bits | content |
 |---|---|---|
@@ -81,27 +84,27 @@ def registers_text(register_map, commands, units, window):
 UNITS_HEAD = """
 ## Units and engines
 
-The words from [`DESCRIPTOR`](#descriptor) on describe the units that are built into the card, two words each, in the
-order of the table below. A tag of 0 ends them.
+The registers [`DESCRIPTOR`](#descriptor) describe the units that are built into the card, two words per unit, in the
+order of the table below. A tag of 0 ends the table.
 
 | word | bits | content |
 |---|---|---|
 | 0 | 7:0 | tag |
-| 0 | 11:8, 15:12 | minor and major version: the major one changes when an old driver would go wrong with the unit |
+| 0 | 11:8, 15:12 | minor and major version; the major version rises when existing drivers would no longer work with the unit |
 | 0 | 23:16 | number of instances |
 | 0 | 31:24 | features |
-| 1 | 9:0 | base: word address of the first instance, 0 where the unit has no registers |
-| 1 | 17:10 | words used by an instance |
-| 1 | 24:18 | stride: words from one instance to the next |
-| 1 | 29:25 | number of its first instance on the load bus, 31: none; it has a meaning inside the card alone |
+| 1 | 9:0 | base: word address of the first instance; 0 if the unit has no registers |
+| 1 | 17:10 | number of words that an instance uses |
+| 1 | 24:18 | stride: words from one instance to the next; 0 if all instances share their registers |
+| 1 | 29:25 | number of the first instance on the load bus inside the card; 31: none; not relevant to hosts |
 
 | tag | unit | version | instances | registers of one instance | engine | features | meaning |
 |---|---|---|---|---|---|---|---|
 """
 
 ENGINES_HEAD = """
-An engine names something that may be built in; registers, fields and commands ask for engines. The bit is that of the
-mask in which the C and Python interfaces give them.
+An engine is an optional part of the card. Registers, fields and commands name the engine that they need. The C and
+Python interfaces report the engines of a card as a mask with the bits of this table.
 
 | bit | engine | shown by | meaning |
 |---|---|---|---|
@@ -111,9 +114,9 @@ mask in which the C and Python interfaces give them.
 WINDOW_HEAD = """
 ## The window
 
-Reserved addresses, whole ranges or words between the registers of another range, answer `UNKNOWN_ADDRESS`. A unit that
-is built later takes its reserved range, and `MAP_VERSION` then has a higher minor version: a driver accepts any minor
-version and refuses another major one. A register keeps its address within a major version.
+Reserved ranges, and words without a register within a range, are unknown addresses. A unit that is added later takes
+its reserved range, and the minor version of `MAP_VERSION` rises. A driver accepts any minor version and refuses an
+unknown major version. A register keeps its address within a major version.
 
 | bytes | words | content | state |
 |---|---|---|---|
@@ -173,7 +176,8 @@ def _summary(register, commands):
 def _register(register, commands):
     lines = [f"\n## {register.name}\n\n{_address(register)}, {ACCESS_TEXT[register.access]}"]
     if register.is_array:
-        lines.append(f", n = 0 to {register.count - 1}" + (", only of axes that the card has" if register.only_present_axes else ""))
+        axes = ", only axes that the card has" if register.only_present_axes else ""
+        lines.append(f", n = 0 to {register.count - 1}{axes}")
     lines.append(f". {register.brief}{' ' if register.group_brief else ''}{register.group_brief}")
     lines.append(f" Needs the engine `{register.engine}`.\n" if register.engine else "\n")
     lines.append("\n| bits | field | reset | range | unit | engine | meaning |\n|---|---|---|---|---|---|---|\n")
@@ -205,13 +209,13 @@ def commands_text(commands, constants):
     parts.append("\n## Summary\n\n| opcode | command | queues | halfwords | engine | meaning |\n|---|---|---|---|---|---|\n")
     parts += [_command_row(c) for c in commands.commands]
     parts += [_command(c) for c in commands.commands]
-    parts.append("\n## Numbers that follow from how the card is built\n\n| name | value | meaning |\n|---|---|---|\n")
+    parts.append("\n## Numbers that the design of the card determines\n\n| name | value | meaning |\n|---|---|---|\n")
     parts += [f"| `{c.name}` | {c.value} | {_cell(c.brief)} |\n" for c in constants]
     return _wrapped("".join(parts))
 
 
 def _halfwords(command):
-    axis = "a further axis" if command.axes_in_base else "an axis"
+    axis = "per further axis" if command.axes_in_base else "per axis"
     per_axis = f" + {command.axis_halfwords} {axis}" if command.axis_halfwords else ""
     return f"{command.base_halfwords}{per_axis}"
 
@@ -248,14 +252,14 @@ def _command(command):
 def _destination(command):
     if len(command.queues) == 1:
         return f"to the {command.queues[0]} queue"
-    return "sent once: the card puts it into both queues"
+    return "sent once; the card puts it into both queues"
 
 
 def _mask(command):
     if command.flags is None:
         return MASK_TEXT[command.mask]
     flags = command.flags
-    return f"not axes but flags: {flags.brief}; a class other than 0 only with the engine `{flags.engine}`"
+    return f"flags instead of axes: {flags.brief}; a class other than 0 needs the engine `{flags.engine}`"
 
 
 def _field(field):

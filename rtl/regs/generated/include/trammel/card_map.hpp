@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kMapVersionValue = 0x00030006;
 inline constexpr std::uint32_t kCommandsVersionValue = 3;
 inline constexpr std::uint32_t kWindowBytes = 4096;
 
-// Numbers that follow from how the card is built.
+// Numbers that the design of the card determines.
 namespace constant {
 inline constexpr std::uint32_t kFractionBits = 40;  // Fraction bits of a pulse generator's phase and increment
 inline constexpr std::uint32_t kRateFractionBits =
@@ -31,11 +31,9 @@ inline constexpr std::uint32_t kSlewClocks = 4;          // Clocks from one upda
 inline constexpr std::uint32_t kUnderrunReserveTicks =
     256;  // Feed ticks that the under-run hold keeps queued in addition to those that a stop takes
 inline constexpr std::uint32_t kShaperTurnoverClocks =
-    6;  // Clocks that the step shaper adds to max(1, STEP_LENGTH) + STEP_SPACE from one leading edge to the next; one
-        // less if STEP_LENGTH is 0
+    6;  // Clocks between two leading edges beyond max(1, STEP_LENGTH) + STEP_SPACE; one less if STEP_LENGTH is 0
 inline constexpr std::uint32_t kShaperReversalClocks =
-    12;  // Clocks that the step shaper adds to STEP_SPACE + DIR_HOLD + DIR_SETUP from the trailing edge to the next
-         // leading edge at a reversal
+    12;  // Clocks from trailing to leading edge at a reversal, beyond STEP_SPACE + DIR_HOLD + DIR_SETUP
 inline constexpr std::uint32_t kDecodeClocks = 8;  // Clocks for the decoding of a line, in addition to those per axis
 inline constexpr std::uint32_t kDecodeAxisClocks = 3;  // Clocks for the decoding of a line, per axis of the line
 inline constexpr std::uint32_t kAccumulatorTickClocks =
@@ -61,7 +59,7 @@ inline constexpr std::uint32_t kClassFixed =
     2;  // Class of a feed piece: motion that a hold must not interrupt, such as threading; a hold waits for its end
 }  // namespace constant
 
-// Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).
+// Engines: bit numbers in the mask of built-in engines (rtl/regs/units.toml).
 namespace engine {
 inline constexpr std::uint32_t kLines = 0;         // Lines on the pulse generators; on every card.
 inline constexpr std::uint32_t kAccumulator = 1;   // ARC on the deviation accumulator, in 4 directions.
@@ -112,30 +110,29 @@ inline constexpr std::array<std::string_view, 18> kEngineNames{
     "underrun_hold", "path_commands",  "streaming",     "classes",       "watermarks",   "machine_inputs",
     "captures",      "emergency_stop", "enables",       "soft_limits",   "capture_fifo", "pwm"};
 
-// What a register does on an access; a write to Constant, Live and Snapshot is refused as READ_ONLY, a read of
-// Command as WRITE_ONLY.
+// Kinds of registers. A write to Constant, Live and Snapshot is refused as READ_ONLY, a read of Command as WRITE_ONLY.
 enum class Access {
   Constant,   // fixed since reset
-  Live,       // as the card stands
-  Snapshot,   // as the card stood when CONTROL.snapshot was written
-  ClearOnes,  // live; writing ones clears
-  Setting,    // reads back what was written
-  Command,    // write only; acts at once
+  Live,       // shows the present state
+  Snapshot,   // shows a latched state
+  ClearOnes,  // shows the present state; writing ones clears
+  Setting,    // reads back the value that was written
+  Command,    // write-only; acts at once
 };
 
 struct Register {
   std::string_view name;
-  std::uint32_t address;  // byte address of the register, of an array's slot for axis 0
-  std::uint32_t count;    // slots, 1 when it is not an array
-  std::int32_t stride;    // bytes from slot to slot, negative when an array runs downwards, 0 when it is none
+  std::uint32_t address;  // byte address; of an array: of its slot for axis 0
+  std::uint32_t count;    // number of slots; 1 if it is not an array
+  std::int32_t stride;    // bytes from slot to slot; negative if an array runs downwards; 0 if it is not an array
   Access access;
-  std::uint32_t reset;    // value after reset; of a constant with `from_card` not known here
-  std::uint32_t mask;     // bits with meaning; a write of any other bit is refused as BAD_VALUE
-  std::uint32_t limited;  // bits of the field that `minimum` and `maximum` bound, 0 when there is none
-  std::uint32_t minimum;  // of that field, shifted down
+  std::uint32_t reset;    // value after reset; meaningless for a constant with `from_card`
+  std::uint32_t mask;     // bits with meaning; setting any other bit is refused as BAD_VALUE
+  std::uint32_t limited;  // bits of the field that `minimum` and `maximum` limit; 0: no field has limits
+  std::uint32_t minimum;  // of that field, shifted to bit 0
   std::uint32_t maximum;
-  std::uint32_t engine;    // engine without which the register is an unknown address; 0 (lines): always there
-  std::uint32_t optional;  // bits of `mask` that have a meaning only with `optional_engine`
+  std::uint32_t engine;    // engine without which the address is unknown; 0 (lines): every card has the register
+  std::uint32_t optional;  // bits of `mask` that need `optional_engine`
   std::uint32_t optional_engine;
   bool only_present_axes;  // slots of absent axes are unknown addresses
   bool from_card;          // the value comes from the card's parameters, straps or state
@@ -325,7 +322,7 @@ constexpr std::uint32_t input_filter(std::uint32_t index) { return 0xE00 + 4 * i
 constexpr std::uint32_t role(std::uint32_t index) { return 0xE80 + 4 * index; }
 }  // namespace reg
 
-// Areas of latched values: their byte addresses, and their registers in any of them.
+// Areas of latched values: the byte address of each area, and that of a register in a given area.
 enum class Area : std::uint32_t {
   Snap = 0x200,
   Stop = 0x280,
@@ -352,7 +349,7 @@ constexpr std::uint32_t position(Area area, std::uint32_t axis) {
 }
 }  // namespace reg
 
-// Masks of fields, and shifts of those wider than a bit.
+// Masks of fields, and shifts of fields wider than one bit.
 namespace field {
 inline constexpr std::uint32_t kMapVersionMinor = 0xFFFF;
 inline constexpr std::uint32_t kMapVersionMinorShift = 0;
@@ -758,20 +755,20 @@ struct Unit {
   std::uint8_t tag;
   std::uint8_t major;
   std::uint8_t minor;
-  std::uint32_t engine;     // engine without which the unit is not built in; 0 (lines): on every card
-  UnitCount count;          // which number of the card its instances are
-  std::uint32_t instances;  // with Fixed: how many
+  std::uint32_t engine;     // engine that the unit needs; 0 (lines): every card has it
+  UnitCount count;          // property of the card that gives the number of instances
+  std::uint32_t instances;  // number of instances with Fixed
   bool has_registers;
   std::uint32_t first;      // byte address of the first register of the first instance
-  std::int32_t first_step;  // bytes that it moves with each axis of the card beyond the first
-  std::uint32_t last;       // and of the last one
+  std::int32_t first_step;  // bytes by which `first` moves per further axis of the card
+  std::uint32_t last;       // byte address of the last register of the first instance
   std::int32_t last_step;
   std::uint32_t stride;                   // words from one instance to the next
   std::uint32_t load_unit;                // number on the load bus, 31: none
-  std::array<std::uint32_t, 8> features;  // by bit: the engine that sets it, 0: no such feature
+  std::array<std::uint32_t, 8> features;  // by bit: the engine that sets it; 0: no feature
 };
 
-// What one descriptor says.
+// Content of one descriptor.
 struct Descriptor {
   std::uint8_t tag = 0;
   std::uint8_t major = 0;
@@ -800,8 +797,8 @@ constexpr Descriptor descriptor_of(std::uint32_t word_0, std::uint32_t word_1) {
           static_cast<std::uint8_t>(bits(word_1, 25, 5))};
 }
 
-inline constexpr std::uint32_t kDescriptorTable = 0x100;  // byte address of the first
-inline constexpr std::uint32_t kDescriptorSlots = 32;     // the ending one included
+inline constexpr std::uint32_t kDescriptorTable = 0x100;  // byte address of the table
+inline constexpr std::uint32_t kDescriptorSlots = 32;     // capacity, including the end of the table
 
 namespace unit {
 inline constexpr std::uint8_t kTimeBase = 1;       // Time base: the ratio of clocks that are enabled, slew, hold.
@@ -841,7 +838,7 @@ inline constexpr std::uint8_t kPwm =
     24;  // Pulse width modulation of outputs. The command PWM sets the duty of a channel.
 }  // namespace unit
 
-// Units on the load bus, of their first instance.
+// Numbers of units on the load bus, of the first instance of each.
 namespace load_unit {
 inline constexpr unsigned kAxes = 0;
 inline constexpr unsigned kAccumulator = 10;
@@ -877,14 +874,14 @@ inline constexpr std::array<Unit, 24> kUnits{{
     {"pwm", 24, 1, 0, 17, UnitCount::Fixed, 2, true, 1736, 0, 1736, 0, 1, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
 }};
 
-// What decides a card's descriptors.
+// Properties of a card that determine its descriptors.
 struct CardShape {
   std::uint32_t engines;
   std::uint32_t axes;
   std::uint32_t ports;
   std::uint32_t inputs;
   std::uint32_t outputs;
-  std::uint32_t captures;  // units
+  std::uint32_t captures;  // number of capture units
 };
 
 constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
@@ -906,7 +903,7 @@ constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
   }
 }
 
-// The descriptor of a unit that is built into such a card.
+// The descriptor of a unit that this card has.
 constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
   Descriptor d{unit.tag, unit.major, unit.minor};
   d.instances = static_cast<std::uint8_t>(instances_of(unit, card));
@@ -926,7 +923,7 @@ constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
   return d;
 }
 
-// Calls put(byte address, word) for each word of the table of such a card, the ending tag included.
+// Calls put(byte address, word) for each word of this card's table, including the tag that ends it.
 template <typename Put>
 constexpr void put_descriptors(const CardShape& card, const Put& put) {
   std::uint32_t address = kDescriptorTable;
@@ -940,7 +937,7 @@ constexpr void put_descriptors(const CardShape& card, const Put& put) {
   put(address, std::uint32_t{0});
 }
 
-// Why an access or a command was refused (REFUSAL.reason).
+// Reasons of a refusal (REFUSAL.reason).
 enum class Reason : std::uint8_t {
   None = 0,           // Nothing was refused.
   UnknownOpcode = 1,  // The command's opcode has no meaning, or its engine is not built in.
@@ -961,7 +958,7 @@ enum class Reason : std::uint8_t {
   Faulted = 15,         // A word for the stream or a START while a fault stands.
 };
 
-// The reason as the documentation spells it; "?" for a value without meaning.
+// Name of a reason as in the documentation; "?" for an unknown value.
 constexpr std::string_view reason_name(std::uint8_t reason) {
   switch (reason) {
     case 0:
@@ -1001,7 +998,7 @@ constexpr std::string_view reason_name(std::uint8_t reason) {
   }
 }
 
-// What the reason means, one sentence.
+// Meaning of a reason, one sentence.
 constexpr std::string_view reason_text(std::uint8_t reason) {
   switch (reason) {
     case 0:
@@ -1064,26 +1061,26 @@ enum class FieldKind {
   Signed,  // sign-extended to whole halfwords
 };
 
-// Which axes a command's mask may name.
+// Rule for the mask byte of a command.
 enum class MaskRule {
   None,          // must be 0
   Any,           // at least one axis, and only axes that the card has
   Plane,         // exactly the two axes of the field `plane`
   PlaneAndAxes,  // the two axes of the field `plane`, and any further ones that the card has
-  Flags,         // no axes: `flags_free`, and in the other bits up to `flags_maximum`, 0 without `flags_engine`
+  Flags,         // flags: `flags_free`, and in the other bits a value up to `flags_maximum`, 0 without `flags_engine`
 };
 
 struct Field {
   std::string_view name;
   FieldKind kind;
-  std::uint32_t bits;    // width with meaning
-  std::uint32_t offset;  // halfwords from the start of the payload (after the count)
+  std::uint32_t bits;    // number of bits with meaning
+  std::uint32_t offset;  // halfwords from the start of the payload, which follows the count
   std::uint32_t halfwords;
-  bool per_axis;  // once for each axis of the mask (but the first `axes_in_base`: the plane's), lowest first
+  bool per_axis;  // repeated for each axis of the mask except the `axes_in_base` of the plane, lowest first
   std::uint64_t minimum;
-  std::uint64_t limit;     // largest magnitude where the bits allow more, else 0
-  std::uint32_t mask;      // of a one-halfword field: bits that may be set, else 0
-  std::uint32_t optional;  // bits besides `mask` that may be set with `optional_engine`
+  std::uint64_t limit;     // largest magnitude if the bits allow more, else 0
+  std::uint32_t mask;      // of a field of one halfword: bits that may be set, else 0
+  std::uint32_t optional;  // further bits that may be set with `optional_engine`
   std::uint32_t optional_engine;
   bool at_most_count;  // must not exceed the command's count
 };
@@ -1093,16 +1090,16 @@ struct Command {
   Opcode opcode;
   bool to_geometry;
   bool to_feed;
-  std::uint32_t engine;  // engine without which the opcode is unknown; 0 (lines): always known
-  bool built;            // false: only laid out yet, and unknown whatever the engines are
+  std::uint32_t engine;  // engine without which the opcode is unknown; 0 (lines): every card knows it
+  bool built;            // false: only the layout is defined; the opcode is unknown on every card
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
   std::uint32_t flags_engine;
   std::uint8_t flags_free;
   std::uint64_t count_minimum;
   std::uint64_t count_maximum;
-  std::uint32_t base_halfwords;  // on the wire: header, count and the payload's fixed part
-  std::uint32_t axis_halfwords;  // payload for each axis of the mask but `axes_in_base` of them
+  std::uint32_t base_halfwords;  // on the wire: header, count and the fixed part of the payload
+  std::uint32_t axis_halfwords;  // payload per axis of the mask, except for `axes_in_base` axes
   std::uint32_t axes_in_base;
   std::size_t field_count;
   std::array<Field, kMaxFields> fields;
@@ -1278,7 +1275,7 @@ inline constexpr std::array<Command, 12> kCommands{{
        Field{"gain", FieldKind::Unsigned, 16, 2, 1, false, 0, 0x0, 0x0, 0x0, 0, false}}}},
 }};
 
-// Layout of a command, nullptr when the opcode has no meaning.
+// Layout of a command; nullptr if the opcode is unknown.
 constexpr const Command* find_command(std::uint8_t opcode) {
   for (const Command& command : kCommands) {
     if (static_cast<std::uint8_t>(command.opcode) == opcode) return &command;
@@ -1303,17 +1300,17 @@ constexpr std::uint32_t words(const Command& command, std::uint8_t mask) { retur
 
 constexpr bool has_engine(std::uint32_t engines, std::uint32_t engine) { return (engines >> engine & 1) != 0; }
 
-// The opcode has a meaning on a card with these engines.
+// Whether a card with these engines knows the opcode.
 constexpr bool is_known(const Command& command, std::uint32_t engines) {
   return command.built && has_engine(engines, command.engine);
 }
 
-// With MaskRule::Flags: the mask byte has a meaning on a card with these engines.
+// With MaskRule::Flags: whether a card with these engines accepts the mask byte.
 constexpr bool flags_good(const Command& command, std::uint8_t flags, std::uint32_t engines) {
   return (flags & ~command.flags_free) <= (has_engine(engines, command.flags_engine) ? command.flags_maximum : 0);
 }
 
-// Bits of the register, of the one-halfword field, that have a meaning on a card with these engines.
+// Bits of a register, or of a field of one halfword, that a card with these engines accepts.
 constexpr std::uint32_t bits_with_meaning(const Register& entry, std::uint32_t engines) {
   return has_engine(engines, entry.optional_engine) ? entry.mask : entry.mask & ~entry.optional;
 }
@@ -1321,7 +1318,7 @@ constexpr std::uint32_t bits_with_meaning(const Field& field, std::uint32_t engi
   return has_engine(engines, field.optional_engine) ? field.mask | field.optional : field.mask;
 }
 
-// Halfwords that the command takes in each of its queues: halfword 1 and the padding are dropped.
+// Halfwords of the command in each of its queues, which store neither halfword 1 nor the padding.
 constexpr std::uint32_t queue_halfwords(const Command& command, std::uint8_t mask) {
   return halfwords(command, mask) - 1;
 }
@@ -1331,7 +1328,7 @@ constexpr std::uint32_t slot_address(const Register& entry, std::uint32_t index)
   return entry.address + index * static_cast<std::uint32_t>(entry.stride);
 }
 
-// The register at a byte address and its slot; nullptr when there is none. Whatever axes the card has.
+// The register at a byte address and its slot; nullptr if there is none. It does not depend on the card's axes.
 struct Slot {
   const Register* entry;
   std::uint32_t index;
