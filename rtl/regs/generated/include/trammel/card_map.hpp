@@ -940,22 +940,22 @@ constexpr void put_descriptors(const CardShape& card, const Put& put) {
 // Reasons of a refusal (REFUSAL.reason).
 enum class Reason : std::uint8_t {
   None = 0,           // Nothing was refused.
-  UnknownOpcode = 1,  // The command's opcode has no meaning, or its engine is not built in.
-  BadLength = 2,      // The command's length does not fit its opcode and axis mask.
-  BadMask = 3,  // The command's axis mask is empty, names an absent axis or does not fit its opcode; or its flags have
-                // no meaning.
-  BadNumber = 4,  // The command's number is not the successor of the last accepted one's.
+  UnknownOpcode = 1,  // The opcode is unknown, or the card lacks the engine that the command needs.
+  BadLength = 2,      // The length of the command does not match its opcode and axis mask.
+  BadMask = 3,    // The axis mask is empty, names an axis that the card lacks or does not fit the opcode; or the flags
+                  // are invalid.
+  BadNumber = 4,  // The number of the command does not follow that of the last accepted command.
   NoRoom = 5,     // The queue has no room for the whole command.
-  BadField = 6,   // A field of the command is out of its range.
-  Truncated = 7,  // A flush came inside the command.
-  Busy = 8,  // The access is not possible while the card is doing what it does, or the stream belongs to another port.
-  ReadOnly = 9,         // A write to a read-only register.
-  UnknownAddress = 10,  // No register at this address.
-  PartialWrite = 11,    // A write of less than 32 bits.
-  BadValue = 12,        // The value is out of range, or bits without meaning are set.
-  StreamClosed = 13,    // A word for the stream after a refused command, before an abort.
-  WriteOnly = 14,       // A read of a write-only register.
-  Faulted = 15,         // A word for the stream or a START while a fault stands.
+  BadField = 6,   // A field of the command is out of range, or its padding is not 0.
+  Truncated = 7,  // A flush came before the command was complete.
+  Busy = 8,      // A direct move or other motion is under way or queued, or another port is in the middle of a command.
+  ReadOnly = 9,  // The register is read-only.
+  UnknownAddress = 10,  // There is no register at this address.
+  PartialWrite = 11,    // The write has less than 32 bits.
+  BadValue = 12,        // The value is out of range, or a reserved bit is set.
+  StreamClosed = 13,    // The stream is closed after a refused command, until an abort.
+  WriteOnly = 14,       // The register is write-only.
+  Faulted = 15,         // The card takes neither words of the stream nor START while FAULT is not 0.
 };
 
 // Name of a reason as in the documentation; "?" for an unknown value.
@@ -1004,36 +1004,36 @@ constexpr std::string_view reason_text(std::uint8_t reason) {
     case 0:
       return "Nothing was refused.";
     case 1:
-      return "The command's opcode has no meaning, or its engine is not built in.";
+      return "The opcode is unknown, or the card lacks the engine that the command needs.";
     case 2:
-      return "The command's length does not fit its opcode and axis mask.";
+      return "The length of the command does not match its opcode and axis mask.";
     case 3:
-      return "The command's axis mask is empty, names an absent axis or does not fit its opcode; or its flags have no "
-             "meaning.";
+      return "The axis mask is empty, names an axis that the card lacks or does not fit the opcode; or the flags are "
+             "invalid.";
     case 4:
-      return "The command's number is not the successor of the last accepted one's.";
+      return "The number of the command does not follow that of the last accepted command.";
     case 5:
       return "The queue has no room for the whole command.";
     case 6:
-      return "A field of the command is out of its range.";
+      return "A field of the command is out of range, or its padding is not 0.";
     case 7:
-      return "A flush came inside the command.";
+      return "A flush came before the command was complete.";
     case 8:
-      return "The access is not possible while the card is doing what it does, or the stream belongs to another port.";
+      return "A direct move or other motion is under way or queued, or another port is in the middle of a command.";
     case 9:
-      return "A write to a read-only register.";
+      return "The register is read-only.";
     case 10:
-      return "No register at this address.";
+      return "There is no register at this address.";
     case 11:
-      return "A write of less than 32 bits.";
+      return "The write has less than 32 bits.";
     case 12:
-      return "The value is out of range, or bits without meaning are set.";
+      return "The value is out of range, or a reserved bit is set.";
     case 13:
-      return "A word for the stream after a refused command, before an abort.";
+      return "The stream is closed after a refused command, until an abort.";
     case 14:
-      return "A read of a write-only register.";
+      return "The register is write-only.";
     case 15:
-      return "A word for the stream or a START while a fault stands.";
+      return "The card takes neither words of the stream nor START while FAULT is not 0.";
     default:
       return "Unknown reason.";
   }
