@@ -45,6 +45,7 @@ class Register:
     only_present_axes: bool
     engine: str  # engine that the register needs; empty: every card has it
     area: str  # area of latched values that the register belongs to, or empty
+    group_brief: str  # description of its area or array of groups, or empty
     fields: List[Field] = field(default_factory=list)
 
     @property
@@ -140,6 +141,7 @@ def _register(node):
         only_present_axes=bool(array.get_property("only_present_axes")),
         engine=node.get_property("engine") or (file is not None and file.get_property("engine")) or "",
         area=area,
+        group_brief=(file is not None and file.get_property("desc")) or "",
         fields=[_field(f) for f in node.fields()],
     )
 

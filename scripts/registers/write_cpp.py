@@ -18,30 +18,29 @@ inline constexpr std::size_t kMaxAxes = 8;
 """
 
 TYPES = """
-// What a register does on an access; a write to Constant, Live and Snapshot is refused as READ_ONLY, a read of
-// Command as WRITE_ONLY.
+// Kinds of registers. A write to Constant, Live and Snapshot is refused as READ_ONLY, a read of Command as WRITE_ONLY.
 enum class Access {
   Constant,   // fixed since reset
-  Live,       // as the card stands
-  Snapshot,   // as the card stood when CONTROL.snapshot was written
-  ClearOnes,  // live; writing ones clears
-  Setting,    // reads back what was written
-  Command,    // write only; acts at once
+  Live,       // shows the present state
+  Snapshot,   // shows a latched state
+  ClearOnes,  // shows the present state; writing ones clears
+  Setting,    // reads back the value that was written
+  Command,    // write-only; acts at once
 };
 
 struct Register {
   std::string_view name;
-  std::uint32_t address;   // byte address of the register, of an array's slot for axis 0
-  std::uint32_t count;     // slots, 1 when it is not an array
-  std::int32_t stride;     // bytes from slot to slot, negative when an array runs downwards, 0 when it is none
+  std::uint32_t address;   // byte address; of an array: of its slot for axis 0
+  std::uint32_t count;     // number of slots; 1 if it is not an array
+  std::int32_t stride;     // bytes from slot to slot; negative if an array runs downwards; 0 if it is not an array
   Access access;
-  std::uint32_t reset;     // value after reset; of a constant with `from_card` not known here
-  std::uint32_t mask;      // bits with meaning; a write of any other bit is refused as BAD_VALUE
-  std::uint32_t limited;   // bits of the field that `minimum` and `maximum` bound, 0 when there is none
-  std::uint32_t minimum;   // of that field, shifted down
+  std::uint32_t reset;     // value after reset; meaningless for a constant with `from_card`
+  std::uint32_t mask;      // bits with meaning; setting any other bit is refused as BAD_VALUE
+  std::uint32_t limited;   // bits of the field that `minimum` and `maximum` limit; 0: no field has limits
+  std::uint32_t minimum;   // of that field, shifted to bit 0
   std::uint32_t maximum;
-  std::uint32_t engine;    // engine without which the register is an unknown address; 0 (lines): always there
-  std::uint32_t optional;  // bits of `mask` that have a meaning only with `optional_engine`
+  std::uint32_t engine;    // engine without which the address is unknown; 0 (lines): every card has the register
+  std::uint32_t optional;  // bits of `mask` that need `optional_engine`
   std::uint32_t optional_engine;
   bool only_present_axes;  // slots of absent axes are unknown addresses
   bool from_card;          // the value comes from the card's parameters, straps or state
@@ -54,26 +53,26 @@ enum class FieldKind {
   Signed,  // sign-extended to whole halfwords
 };
 
-// Which axes a command's mask may name.
+// Rule for the mask byte of a command.
 enum class MaskRule {
   None,          // must be 0
   Any,           // at least one axis, and only axes that the card has
   Plane,         // exactly the two axes of the field `plane`
   PlaneAndAxes,  // the two axes of the field `plane`, and any further ones that the card has
-  Flags,         // no axes: `flags_free`, and in the other bits up to `flags_maximum`, 0 without `flags_engine`
+  Flags,         // flags: `flags_free`, and in the other bits a value up to `flags_maximum`, 0 without `flags_engine`
 };
 
 struct Field {
   std::string_view name;
   FieldKind kind;
-  std::uint32_t bits;      // width with meaning
-  std::uint32_t offset;    // halfwords from the start of the payload (after the count)
+  std::uint32_t bits;      // number of bits with meaning
+  std::uint32_t offset;    // halfwords from the start of the payload, which follows the count
   std::uint32_t halfwords;
-  bool per_axis;           // once for each axis of the mask (but the first `axes_in_base`: the plane's), lowest first
+  bool per_axis;           // repeated for each axis of the mask except the `axes_in_base` of the plane, lowest first
   std::uint64_t minimum;
-  std::uint64_t limit;     // largest magnitude where the bits allow more, else 0
-  std::uint32_t mask;      // of a one-halfword field: bits that may be set, else 0
-  std::uint32_t optional;  // bits besides `mask` that may be set with `optional_engine`
+  std::uint64_t limit;     // largest magnitude if the bits allow more, else 0
+  std::uint32_t mask;      // of a field of one halfword: bits that may be set, else 0
+  std::uint32_t optional;  // further bits that may be set with `optional_engine`
   std::uint32_t optional_engine;
   bool at_most_count;      // must not exceed the command's count
 };
@@ -83,16 +82,16 @@ struct Command {
   Opcode opcode;
   bool to_geometry;
   bool to_feed;
-  std::uint32_t engine;  // engine without which the opcode is unknown; 0 (lines): always known
-  bool built;            // false: only laid out yet, and unknown whatever the engines are
+  std::uint32_t engine;  // engine without which the opcode is unknown; 0 (lines): every card knows it
+  bool built;            // false: only the layout is defined; the opcode is unknown on every card
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
   std::uint32_t flags_engine;
   std::uint8_t flags_free;
   std::uint64_t count_minimum;
   std::uint64_t count_maximum;
-  std::uint32_t base_halfwords;  // on the wire: header, count and the payload's fixed part
-  std::uint32_t axis_halfwords;  // payload for each axis of the mask but `axes_in_base` of them
+  std::uint32_t base_halfwords;  // on the wire: header, count and the fixed part of the payload
+  std::uint32_t axis_halfwords;  // payload per axis of the mask, except for `axes_in_base` axes
   std::uint32_t axes_in_base;
   std::size_t field_count;
   std::array<Field, kMaxFields> fields;
@@ -100,7 +99,7 @@ struct Command {
 """
 
 TAIL = """
-// Layout of a command, nullptr when the opcode has no meaning.
+// Layout of a command; nullptr if the opcode is unknown.
 constexpr const Command* find_command(std::uint8_t opcode) {
   for (const Command& command : kCommands) {
     if (static_cast<std::uint8_t>(command.opcode) == opcode) return &command;
@@ -125,17 +124,17 @@ constexpr std::uint32_t words(const Command& command, std::uint8_t mask) { retur
 
 constexpr bool has_engine(std::uint32_t engines, std::uint32_t engine) { return (engines >> engine & 1) != 0; }
 
-// The opcode has a meaning on a card with these engines.
+// Whether a card with these engines knows the opcode.
 constexpr bool is_known(const Command& command, std::uint32_t engines) {
   return command.built && has_engine(engines, command.engine);
 }
 
-// With MaskRule::Flags: the mask byte has a meaning on a card with these engines.
+// With MaskRule::Flags: whether a card with these engines accepts the mask byte.
 constexpr bool flags_good(const Command& command, std::uint8_t flags, std::uint32_t engines) {
   return (flags & ~command.flags_free) <= (has_engine(engines, command.flags_engine) ? command.flags_maximum : 0);
 }
 
-// Bits of the register, of the one-halfword field, that have a meaning on a card with these engines.
+// Bits of a register, or of a field of one halfword, that a card with these engines accepts.
 constexpr std::uint32_t bits_with_meaning(const Register& entry, std::uint32_t engines) {
   return has_engine(engines, entry.optional_engine) ? entry.mask : entry.mask & ~entry.optional;
 }
@@ -143,7 +142,7 @@ constexpr std::uint32_t bits_with_meaning(const Field& field, std::uint32_t engi
   return has_engine(engines, field.optional_engine) ? field.mask | field.optional : field.mask;
 }
 
-// Halfwords that the command takes in each of its queues: halfword 1 and the padding are dropped.
+// Halfwords of the command in each of its queues, which store neither halfword 1 nor the padding.
 constexpr std::uint32_t queue_halfwords(const Command& command, std::uint8_t mask) {
   return halfwords(command, mask) - 1;
 }
@@ -153,7 +152,7 @@ constexpr std::uint32_t slot_address(const Register& entry, std::uint32_t index)
   return entry.address + index * static_cast<std::uint32_t>(entry.stride);
 }
 
-// The register at a byte address and its slot; nullptr when there is none. Whatever axes the card has.
+// The register at a byte address and its slot; nullptr if there is none. It does not depend on the card's axes.
 struct Slot {
   const Register* entry;
   std::uint32_t index;
@@ -181,20 +180,20 @@ struct Unit {
   std::uint8_t tag;
   std::uint8_t major;
   std::uint8_t minor;
-  std::uint32_t engine;      // engine without which the unit is not built in; 0 (lines): on every card
-  UnitCount count;           // which number of the card its instances are
-  std::uint32_t instances;   // with Fixed: how many
+  std::uint32_t engine;      // engine that the unit needs; 0 (lines): every card has it
+  UnitCount count;           // property of the card that gives the number of instances
+  std::uint32_t instances;   // number of instances with Fixed
   bool has_registers;
   std::uint32_t first;       // byte address of the first register of the first instance
-  std::int32_t first_step;   // bytes that it moves with each axis of the card beyond the first
-  std::uint32_t last;        // and of the last one
+  std::int32_t first_step;   // bytes by which `first` moves per further axis of the card
+  std::uint32_t last;        // byte address of the last register of the first instance
   std::int32_t last_step;
   std::uint32_t stride;      // words from one instance to the next
   std::uint32_t load_unit;   // number on the load bus, 31: none
-  std::array<std::uint32_t, 8> features;  // by bit: the engine that sets it, 0: no such feature
+  std::array<std::uint32_t, 8> features;  // by bit: the engine that sets it; 0: no feature
 };
 
-// What one descriptor says.
+// Content of one descriptor.
 struct Descriptor {
   std::uint8_t tag = 0;
   std::uint8_t major = 0;
@@ -226,14 +225,14 @@ constexpr Descriptor descriptor_of(std::uint32_t word_0, std::uint32_t word_1) {
 """
 
 DESCRIBE = """
-// What decides a card's descriptors.
+// Properties of a card that determine its descriptors.
 struct CardShape {
   std::uint32_t engines;
   std::uint32_t axes;
   std::uint32_t ports;
   std::uint32_t inputs;
   std::uint32_t outputs;
-  std::uint32_t captures;  // units
+  std::uint32_t captures;  // number of capture units
 };
 
 constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
@@ -248,7 +247,7 @@ constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
   }
 }
 
-// The descriptor of a unit that is built into such a card.
+// The descriptor of a unit that this card has.
 constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
   Descriptor d{unit.tag, unit.major, unit.minor};
   d.instances = static_cast<std::uint8_t>(instances_of(unit, card));
@@ -268,7 +267,7 @@ constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
   return d;
 }
 
-// Calls put(byte address, word) for each word of the table of such a card, the ending tag included.
+// Calls put(byte address, word) for each word of this card's table, including the tag that ends it.
 template <typename Put>
 constexpr void put_descriptors(const CardShape& card, const Put& put) {
   std::uint32_t address = kDescriptorTable;
@@ -322,14 +321,14 @@ def _versions(register_map, commands):
 
 
 def _constants(constants):
-    yield "\n// Numbers that follow from how the card is built.\nnamespace constant {\n"
+    yield "\n// Numbers that the design of the card determines.\nnamespace constant {\n"
     for c in constants:
         yield f"inline constexpr std::uint32_t k{camel(c.name)} = {c.value};  // {c.brief}\n"
     yield "}  // namespace constant\n"
 
 
 def _engines(engines):
-    yield "\n// Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).\nnamespace engine {\n"
+    yield "\n// Engines: bit numbers in the mask of built-in engines (rtl/regs/units.toml).\nnamespace engine {\n"
     for e in engines:
         yield f"inline constexpr std::uint32_t k{camel(e.name)} = {e.low};  // {e.brief}\n"
     yield "}  // namespace engine\n\n// The same as masks.\nnamespace engines {\n"
@@ -341,7 +340,7 @@ def _engines(engines):
 
 
 def _areas(areas):
-    yield "\n// Areas of latched values: their byte addresses, and their registers in any of them.\n"
+    yield "\n// Areas of latched values: the byte address of each area, and that of a register in a given area.\n"
     yield "enum class Area : std::uint32_t {\n"
     for area, registers in areas.items():
         yield f"{camel(area)} = 0x{min(r.address for r in registers):03X},\n"
@@ -370,7 +369,7 @@ def _addresses(registers):
 
 def _field_constants(registers):
     """Masks and shifts of registers with more than one field; a single field starts at bit 0."""
-    yield "\n// Masks of fields, and shifts of those wider than a bit.\nnamespace field {\n"
+    yield "\n// Masks of fields, and shifts of fields wider than one bit.\nnamespace field {\n"
     for r in registers:
         if len(r.fields) < 2 and r.name not in ("BUILD_FLAGS",):
             continue
@@ -402,13 +401,13 @@ def _register_table(register_map, version, units):
 
 
 def _unit_table(registers, units):
-    yield f"inline constexpr std::uint32_t kDescriptorTable = 0x{units.table:03X};  // byte address of the first\n"
-    yield f"inline constexpr std::uint32_t kDescriptorSlots = {units.slots};  // the ending one included\n"
+    yield f"inline constexpr std::uint32_t kDescriptorTable = 0x{units.table:03X};  // byte address of the table\n"
+    yield f"inline constexpr std::uint32_t kDescriptorSlots = {units.slots};  // capacity, including the end of the table\n"
     yield "\nnamespace unit {\n"
     for u in units.units:
         yield f"inline constexpr std::uint8_t k{camel(u.name)} = {u.tag};  // {u.brief}\n"
     yield "}  // namespace unit\n"
-    yield "\n// Units on the load bus, of their first instance.\nnamespace load_unit {\n"
+    yield "\n// Numbers of units on the load bus, of the first instance of each.\nnamespace load_unit {\n"
     for u in units.units:
         if u.load_unit != um.LOAD_UNIT_NONE:
             yield f"inline constexpr unsigned k{camel(u.name)} = {u.load_unit};\n"
@@ -441,15 +440,15 @@ def _bool(value):
 
 
 def _reasons(reasons):
-    yield "\n// Why an access or a command was refused (REFUSAL.reason).\nenum class Reason : std::uint8_t {\n"
+    yield "\n// Reasons of a refusal (REFUSAL.reason).\nenum class Reason : std::uint8_t {\n"
     for r in reasons:
         yield f"  {camel(r.name)} = {r.value},  // {r.brief}\n"
-    yield "};\n\n// The reason as the documentation spells it; \"?\" for a value without meaning.\n"
+    yield "};\n\n// Name of a reason as in the documentation; \"?\" for an unknown value.\n"
     yield "constexpr std::string_view reason_name(std::uint8_t reason) {\nswitch (reason) {\n"
     for r in reasons:
         yield f'case {r.value}: return "{r.name}";\n'
     yield 'default: return "?";\n}\n}\n'
-    yield "\n// What the reason means, one sentence.\n"
+    yield "\n// Meaning of a reason, one sentence.\n"
     yield "constexpr std::string_view reason_text(std::uint8_t reason) {\nswitch (reason) {\n"
     for r in reasons:
         yield f'case {r.value}: return "{r.brief}";\n'

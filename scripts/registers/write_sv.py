@@ -25,7 +25,7 @@ CHECKS = [
     ("AT_MOST_COUNT", "the field must not exceed the command's count"),
     ("UNSIGNED_LIMIT", "(at the end) the field must not exceed 2^40"),
     ("SIGNED_LIMIT", "(at the end) the field must lie in -2^40 .. 2^40"),
-    ("PLANE", "[6:4] and [10:8] name two different axes of the command's axis mask"),
+    ("PLANE", "[6:4] and [10:8] must be two different axes of the axis mask"),
 ]
 
 
@@ -49,19 +49,19 @@ def _hex(width, value):
 
 
 def _constants(constants):
-    yield "\n  // Numbers that follow from how the card is built.\n"
+    yield "\n  // Numbers that the design of the card determines.\n"
     for c in constants:
         yield f"  // {c.brief}\n  localparam int {c.name} = {c.value};\n"
 
 
 def _engines(engines):
-    yield "\n  // Bit numbers of the mask of engines: what is built in.\n"
+    yield "\n  // Engines: bit numbers in the mask of built-in engines.\n"
     for e in engines:
         yield f"  localparam int ENGINE_{e.name.upper()} = {e.low};\n"
 
 
 def _areas(areas):
-    yield "\n  // Areas of latched values: byte address of each, offset in bytes of each register.\n"
+    yield "\n  // Areas of latched values: byte address of each area, offset in bytes of each register in an area.\n"
     for area, registers in areas.items():
         yield f"  localparam logic [11:0] AREA_{area} = {_hex(12, min(r.address for r in registers))};\n"
     area, registers = next(iter(areas.items()))
@@ -75,8 +75,8 @@ WITH_BIT_NUMBERS = ["STATUS", "FAULT", "CONTROL", "IRQ_ENABLE", "CAPTURE_SELECT"
 
 
 def _register_constants(register_map):
-    yield "\n  // Registers: byte address, reset value, bits with meaning; for arrays (the address is axis 0's) also count and\n"
-    yield "  // stride in bytes, negative where the array runs downwards.\n"
+    yield "\n  // Registers: byte address, reset value, bits with meaning. Arrays have the address of axis 0, and also\n"
+    yield "  // a count and a stride in bytes, which is negative if the array runs downwards.\n"
     for r in register_map.registers:
         yield f"  localparam logic [11:0] ADDR_{r.name} = {_hex(12, r.address)};\n"
         yield f"  localparam logic [31:0] RESET_{r.name} = {_hex(32, r.reset)};\n"
@@ -189,18 +189,18 @@ def _register_functions(registers, version):
 
     yield per_built_register(
         "register_access",
-        ["Kind of access of a register by its word address (byte address [11:2]), by the engines that are built in and",
-         "whatever axes are present."],
+        ["Kind of access of the register at a word address (byte address [11:2]) of a card with these engines. It does",
+         "not depend on the card's axes."],
         3, lambda r: f"ACCESS_{r.access.upper()}", "ACCESS_NONE")
     yield per_register(
         "register_only_present_axes",
-        ["1: the register is a slot of one axis and there only when the card has the axis."],
+        ["1: the register is a slot of an axis; it exists only if the card has the axis."],
         1, lambda r: f"1'b{int(r.only_present_axes)}", "1'b0")
     yield per_built_register(
-        "register_mask", ["Bits with meaning, by the engines that are built in; a write of any other bit is refused."],
+        "register_mask", ["Bits that a card with these engines accepts; a write that sets any other bit is refused."],
         32, mask, _hex(32, 0))
     yield per_register(
-        "register_reset", ["Value after reset, and of constants that neither parameters nor straps decide."],
+        "register_reset", ["Value after reset, or value of a constant that neither parameters nor straps determine."],
         32, lambda r: _hex(32, version if r.name == "COMMANDS_VERSION" else r.reset), _hex(32, 0))
     yield _limit_function(registers, patterns)
     yield _slot_function(registers, patterns)
@@ -232,7 +232,7 @@ def _limit_function(registers, patterns):
         if f.maximum is not None:
             conditions.append(f"{bits} <= {_hex(f.width, f.maximum)}")
         items += [(p, " && ".join(conditions)) for p in patterns[r.name]]
-    return _function(["1: the written value keeps the limits that a field has beyond its width."], "register_in_limits",
+    return _function(["1: the written value is within the minimum and maximum of its field."], "register_in_limits",
                      1, "input logic [9:0] word, input logic [31:0] data", "word", items, "1'b1")
 
 
@@ -248,7 +248,7 @@ def _slot_function(registers, patterns):
                 raise ValueError(f"{r.name}: slot 0 lies at a multiple of all slots together")
             value = ("~" if r.stride < 0 else "") + f"word[{low + 2}:{low}]"
             items += [(p, value) for p in patterns[r.name]]
-    return _function(["Axis of a register that is one of the axes' slots, else 0."], "register_axis", 3,
+    return _function(["Axis of a register that is a slot of an axis; 0 for other registers."], "register_axis", 3,
                      "input logic [9:0] word", "word", items, "3'd0")
 
 
@@ -259,8 +259,8 @@ def _descriptor_function(registers, units):
     arguments = ["input logic [31:0] engines"] + [f"input int {_snake(name)}" for name in um.COUNTS]
     head = "  function automatic logic "
     lines = [
-        "\n  // Descriptors of the units that are built in (rtl/regs/units.toml), the first in the lowest bits, 0 behind the",
-        "  // last; a constant for each card.",
+        "\n  // Table of descriptors of a card (rtl/regs/units.toml): the first descriptor in the lowest bits, zeros after the",
+        "  // last. It is constant in each card.",
         f"{head}[{bits - 1}:0] unit_descriptors({arguments[0]},",
     ]
     column = " " * len(f"{head}[{bits - 1}:0] unit_descriptors(")
@@ -309,8 +309,8 @@ def _command_functions(commands):
         items = [(f"OP_{c.name}", _built(c.engine, value(c), default)) for c in commands]
         return _function(comment, name, width, f"input logic [7:0] op, {ENGINES_ARGUMENT}", "op", items, default)
 
-    yield "\n  // Commands, by the engines that are built in: what is not built in is like an opcode without meaning.\n"
-    yield per_command("command_known", ["1: the opcode has a meaning."], 1, lambda c: "1'b1", "1'b0")
+    yield "\n  // Commands of a card with these engines. A command whose engine is not built in is an unknown opcode.\n"
+    yield per_command("command_known", ["1: the opcode is known."], 1, lambda c: "1'b1", "1'b0")
     yield per_command("command_to_geometry", ["1: the command goes to the geometry queue."], 1,
                       lambda c: f"1'b{int('geometry' in c.queues)}", "1'b0")
     yield per_command("command_to_feed", ["1: the command goes to the feed queue."], 1,
@@ -323,13 +323,14 @@ def _command_functions(commands):
     yield per_command("command_count_zero", ["1: the count must be 0."], 1,
                       lambda c: f"1'b{int(c.count.maximum == 0)}", "1'b0")
     yield per_command("command_base_halfwords",
-                      ["Halfwords on the wire, without what is repeated for each axis and without padding:",
-                       "header (2), count (3) and the fixed part of the payload."],
+                      ["Halfwords on the wire, without padding and without the part that is repeated per axis: header (2),",
+                       "count (3) and the fixed part of the payload."],
                       6, lambda c: f"6'd{c.base_halfwords}", "6'd0")
-    yield per_command("command_halfwords_per_axis", ["Halfwords of the payload for each axis of the mask, but command_axes_in_base() of them."],
+    yield per_command("command_halfwords_per_axis",
+                      ["Halfwords of the payload per axis of the mask, except for command_axes_in_base() axes."],
                       6, lambda c: f"6'd{c.axis_halfwords}", "6'd0")
     yield per_command("command_axes_in_base",
-                      ["Axes of the mask whose fields stand in the fixed part of the payload."],
+                      ["Number of axes of the mask whose fields are in the fixed part of the payload."],
                       2, lambda c: f"2'd{c.axes_in_base}", "2'd0")
     yield _function(
         ["Halfwords of a field less one, by its number in the command: FIELD_*."], "field_halfwords_less_one", 3,
@@ -337,14 +338,14 @@ def _command_functions(commands):
         [(f"{{OP_{c.name}, 5'd{i}}}", f"3'd{f.halfwords - 1}") for c in commands for i, f in enumerate(c.fields)], "3'd0")
     yield _payload_function(
         commands, "payload_bits", 16,
-        ["Bits of a payload halfword that may be set, by the engines that are built in (limits and signs: see",
-         "payload_checks()). `index` counts the payload's halfwords from 0; the part for each axis begins at the number of fixed halfwords, which is",
-         "command_base_halfwords() - 5, and `index` goes back there for each further axis."],
+        ["Bits of a payload halfword that a card with these engines accepts; payload_checks() has limits and signs.",
+         "`index` counts the halfwords of the payload from 0. The part that is repeated for each axis begins at index",
+         "command_base_halfwords() - 5, and `index` returns there for each further axis."],
         lambda f, i: _optional(16, _bits(f, i), f.optional_bits, f.optional_engine), _hex(16, 0))
     yield _payload_function(
         commands, "payload_checks", len(CHECKS),
-        ["What else to check at a payload halfword: a set of CHECK_* bits. AT_MOST_COUNT and the limits are set in",
-         "every halfword of their field."],
+        ["Further checks at a payload halfword: a set of CHECK_* bits. AT_MOST_COUNT and the limits are set in every",
+         "halfword of their field."],
         lambda f, i: _checks(f, i), f"{len(CHECKS)}'b{'0' * len(CHECKS)}")
 
 
@@ -354,7 +355,7 @@ def _flags_function(commands):
         if c.flags:
             value = f"(flags & ~8'd{c.flags.free})"
             items.append((f"OP_{c.name}", f"{value} <= (engines[ENGINE_{c.flags.engine.upper()}] ? 8'd{c.flags.maximum} : 8'd0)"))
-    return _function(["1: with MASK_RULE_FLAGS, the mask byte has a meaning, by the engines that are built in."],
+    return _function(["1: with MASK_RULE_FLAGS, a card with these engines accepts the mask byte."],
                      "command_flags_good", 1, f"input logic [7:0] op, input logic [7:0] flags, {ENGINES_ARGUMENT}",
                      "op", items, "1'b1")
 

@@ -187,10 +187,10 @@ TRAMMEL_API trammel_result trammel_configure_axis(trammel_card* card, unsigned a
 typedef struct trammel_status {
   bool busy;          // something is under way or queued
   bool direct;        // a one-shot line (direct move) is under way
-  bool path_active;   // a path is under way
+  bool path_active;   // a path or a one-shot line is under way
   bool feed_active;   // a feed piece is under way
   bool held;          // the time base's ratio is 0
-  bool ended;         // END was reached
+  bool ended;         // END was executed, and nothing has begun since
   bool faulted;       // FAULT is not 0
   bool refused;       // REFUSAL is not 0
   bool snapshot;      // a snapshot is under way
@@ -201,7 +201,7 @@ typedef struct trammel_status {
   bool probed;        // a probe has tripped
   bool probe_missed;  // probing paths ended without an edge
   bool waiting;       // the card waits for an input
-  bool underrun;      // the time base is held because the queues run dry
+  bool underrun;      // the under-run hold is active, or a piece that begins from rest waits for commands
   bool stale;         // position streaming continues without a new period
   bool button_hold;   // the feed hold input holds the card until cycle start
   bool enabled;       // the drives are enabled (trammel_set_enable_sequence())

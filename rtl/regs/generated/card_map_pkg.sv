@@ -3,59 +3,59 @@
 `default_nettype none
 package card_map_pkg;
 
-  // Numbers that follow from how the card is built.
+  // Numbers that the design of the card determines.
   // Fraction bits of a pulse generator's phase and increment
   localparam int FRACTION_BITS = 40;
   // Fraction bits of the feed generator's rate, acceleration and jerk
   localparam int RATE_FRACTION_BITS = 64;
-  // Enabled clocks from one addition of acceleration and jerk to the next
+  // Enabled clocks from one update of rate and acceleration to the next
   localparam int UPDATE_CLOCKS = 32;
-  // Clocks that swaps of the feed generator are apart at least
+  // Minimum number of clocks between two swaps of the feed generator
   localparam int FEED_SWAP_CLOCKS = 24;
-  // Fraction bits of the time base's ratio as the registers have it
+  // Fraction bits of the time base's ratio in the registers
   localparam int RATIO_FRACTION_BITS = 16;
-  // Fraction bits of the time base's ratio inside, and of SLEW
+  // Fraction bits of the ratio inside the time base, and of SLEW
   localparam int SLEW_FRACTION_BITS = 28;
-  // Clocks from one move of the ratio to the next
+  // Clocks from one update of the ratio to the next
   localparam int SLEW_CLOCKS = 4;
-  // Feed ticks that the under-run hold keeps queued beyond what a stop takes
+  // Feed ticks that the under-run hold keeps queued in addition to those that a stop takes
   localparam int UNDERRUN_RESERVE_TICKS = 256;
-  // Clocks that the shaper adds to max(1, length) + space from pulse to pulse; one less for length 0
+  // Clocks between two leading edges beyond max(1, STEP_LENGTH) + STEP_SPACE; one less if STEP_LENGTH is 0
   localparam int SHAPER_TURNOVER_CLOCKS = 6;
-  // Clocks that the shaper adds to space + hold + setup from trailing to leading edge at a reversal
+  // Clocks from trailing to leading edge at a reversal, beyond STEP_SPACE + DIR_HOLD + DIR_SETUP
   localparam int SHAPER_REVERSAL_CLOCKS = 12;
-  // Clocks to decode a line, without those for each axis
+  // Clocks for the decoding of a line, in addition to those per axis
   localparam int DECODE_CLOCKS = 8;
-  // Clocks to decode a line, for each of its axes
+  // Clocks for the decoding of a line, per axis of the line
   localparam int DECODE_AXIS_CLOCKS = 3;
-  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
+  // Minimum number of clocks between two path ticks of the deviation accumulator in 4 directions
   localparam int ACCUMULATOR_TICK_CLOCKS = 9;
-  // The same in 8 directions
+  // Minimum number of clocks between two path ticks of the deviation accumulator in 8 directions
   localparam int ACCUMULATOR_8_TICK_CLOCKS = 17;
-  // Clocks within which an arc begins once the accumulator is free
+  // Longest time from the clock in which the accumulator is free to the start of the next arc, in clocks
   localparam int ACCUMULATOR_HANDOVER_CLOCKS = 30;
-  // Fraction bits of a centre in ARC's deviation and gradients
+  // Fraction bits of the centre in the deviation and the gradients of ARC
   localparam int CENTRE_FRACTION_BITS = 8;
-  // Clocks from a feed tick to the path tick that it is
+  // Clocks from a feed tick to the same tick in the path domain
   localparam int PATH_DELAY_CLOCKS = 3;
-  // Clocks within which every access is answered with up to 4 axes
+  // Longest time until an access is answered, with up to 4 axes, in clocks
   localparam int ANSWER_CLOCKS = 500;
-  // Clocks within which every access is answered with 5 to 8 axes
+  // Longest time until an access is answered, with 5 to 8 axes, in clocks
   localparam int ANSWER_CLOCKS_8_AXES = 700;
-  // Flag of FEED beside its class: the ticks make no steps
+  // Flag of FEED: the ticks of the piece make no steps
   localparam int PIECE_SILENT = 4;
-  // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force
+  // Lowest bit of the slew shift in the flags of FEED: value of one doubling of SLEW
   localparam int PIECE_DOUBLING = 8;
-  // The most doublings of SLEW that a piece may have
+  // Largest slew shift of a piece
   localparam int MAX_SLEW_SHIFT = 3;
-  // Class of a feed piece: what the feed override slows down
+  // Class of a feed piece: motion at the programmed feed
   localparam int CLASS_FEED = 0;
-  // Class of a feed piece: rapid positioning, with a ratio of its own
+  // Class of a feed piece: rapid motion
   localparam int CLASS_RAPID = 1;
-  // Class of a feed piece: threading and the like, which a hold lets end
+  // Class of a feed piece: motion that a hold must not interrupt, such as threading; a hold waits for its end
   localparam int CLASS_FIXED = 2;
 
-  // Bit numbers of the mask of engines: what is built in.
+  // Engines: bit numbers in the mask of built-in engines.
   localparam int ENGINE_LINES = 0;
   localparam int ENGINE_ACCUMULATOR = 1;
   localparam int ENGINE_ACCUMULATOR_8 = 2;
@@ -75,8 +75,8 @@ package card_map_pkg;
   localparam int ENGINE_CAPTURE_FIFO = 16;
   localparam int ENGINE_PWM = 17;
 
-  // Registers: byte address, reset value, bits with meaning; for arrays (the address is axis 0's) also count and
-  // stride in bytes, negative where the array runs downwards.
+  // Registers: byte address, reset value, bits with meaning. Arrays have the address of axis 0, and also
+  // a count and a stride in bytes, which is negative if the array runs downwards.
   localparam logic [11:0] ADDR_MAGIC = 12'h000;
   localparam logic [31:0] RESET_MAGIC = 32'h54524D4C;
   localparam logic [31:0] MASK_MAGIC = 32'hFFFFFFFF;
@@ -758,7 +758,7 @@ package card_map_pkg;
   localparam logic [2:0] ACCESS_SETTING = 3'd5;
   localparam logic [2:0] ACCESS_COMMAND = 3'd6;
 
-  // Areas of latched values: byte address of each, offset in bytes of each register.
+  // Areas of latched values: byte address of each area, offset in bytes of each register in an area.
   localparam logic [11:0] AREA_SNAP = 12'h200;
   localparam logic [11:0] AREA_STOP = 12'h280;
   localparam logic [11:0] AREA_PROBE = 12'h300;
@@ -935,11 +935,11 @@ package card_map_pkg;
   localparam int CHECK_UNSIGNED_LIMIT = 3;
   // (at the end) the field must lie in -2^40 .. 2^40
   localparam int CHECK_SIGNED_LIMIT = 4;
-  // [6:4] and [10:8] name two different axes of the command's axis mask
+  // [6:4] and [10:8] must be two different axes of the axis mask
   localparam int CHECK_PLANE = 5;
 
-  // Kind of access of a register by its word address (byte address [11:2]), by the engines that are built in and
-  // whatever axes are present.
+  // Kind of access of the register at a word address (byte address [11:2]) of a card with these engines. It does
+  // not depend on the card's axes.
   function automatic logic [2:0] register_access(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
       10'b00_0000_0000, 10'b00_0000_0001, 10'b00_0000_0010, 10'b00_0000_0011, 10'b00_0000_0101,
@@ -1040,7 +1040,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // 1: the register is a slot of one axis and there only when the card has the axis.
+  // 1: the register is a slot of an axis; it exists only if the card has the axis.
   function automatic logic register_only_present_axes(input logic [9:0] word);
     casez (word)
       10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b01_0000_1???,
@@ -1053,7 +1053,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Bits with meaning, by the engines that are built in; a write of any other bit is refused.
+  // Bits that a card with these engines accepts; a write that sets any other bit is refused.
   function automatic logic [31:0] register_mask(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
       10'b00_0001_0001:
@@ -1148,7 +1148,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Value after reset, and of constants that neither parameters nor straps decide.
+  // Value after reset, or value of a constant that neither parameters nor straps determine.
   function automatic logic [31:0] register_reset(input logic [9:0] word);
     casez (word)
       10'b00_0000_0000:
@@ -1171,7 +1171,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // 1: the written value keeps the limits that a field has beyond its width.
+  // 1: the written value is within the minimum and maximum of its field.
   function automatic logic register_in_limits(input logic [9:0] word, input logic [31:0] data);
     casez (word)
       10'b01_1001_0000, 10'b01_1001_0001, 10'b01_1001_0010:
@@ -1188,7 +1188,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Axis of a register that is one of the axes' slots, else 0.
+  // Axis of a register that is a slot of an axis; 0 for other registers.
   function automatic logic [2:0] register_axis(input logic [9:0] word);
     casez (word)
       10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b01_0000_1???,
@@ -1203,9 +1203,9 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Commands, by the engines that are built in: what is not built in is like an opcode without meaning.
+  // Commands of a card with these engines. A command whose engine is not built in is an unknown opcode.
 
-  // 1: the opcode has a meaning.
+  // 1: the opcode is known.
   function automatic logic command_known(input logic [7:0] op, input logic [31:0] engines);
     casez (op)
       OP_LINE, OP_FEED, OP_DWELL, OP_END:
@@ -1266,7 +1266,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // 1: with MASK_RULE_FLAGS, the mask byte has a meaning, by the engines that are built in.
+  // 1: with MASK_RULE_FLAGS, a card with these engines accepts the mask byte.
   function automatic logic command_flags_good(input logic [7:0] op,
                                               input logic [7:0] flags,
                                               input logic [31:0] engines);
@@ -1303,8 +1303,8 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Halfwords on the wire, without what is repeated for each axis and without padding:
-  // header (2), count (3) and the fixed part of the payload.
+  // Halfwords on the wire, without padding and without the part that is repeated per axis: header (2),
+  // count (3) and the fixed part of the payload.
   function automatic logic [5:0] command_base_halfwords(input logic [7:0] op,
                                                         input logic [31:0] engines);
     casez (op)
@@ -1328,7 +1328,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Halfwords of the payload for each axis of the mask, but command_axes_in_base() of them.
+  // Halfwords of the payload per axis of the mask, except for command_axes_in_base() axes.
   function automatic logic [5:0] command_halfwords_per_axis(input logic [7:0] op,
                                                             input logic [31:0] engines);
     casez (op)
@@ -1340,7 +1340,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Axes of the mask whose fields stand in the fixed part of the payload.
+  // Number of axes of the mask whose fields are in the fixed part of the payload.
   function automatic logic [1:0] command_axes_in_base(input logic [7:0] op,
                                                       input logic [31:0] engines);
     casez (op)
@@ -1368,9 +1368,9 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Bits of a payload halfword that may be set, by the engines that are built in (limits and signs: see
-  // payload_checks()). `index` counts the payload's halfwords from 0; the part for each axis begins at the number of fixed halfwords, which is
-  // command_base_halfwords() - 5, and `index` goes back there for each further axis.
+  // Bits of a payload halfword that a card with these engines accepts; payload_checks() has limits and signs.
+  // `index` counts the halfwords of the payload from 0. The part that is repeated for each axis begins at index
+  // command_base_halfwords() - 5, and `index` returns there for each further axis.
   function automatic logic [15:0] payload_bits(input logic [7:0] op,
                                                input logic [5:0] index,
                                                input logic [31:0] engines);
@@ -1422,8 +1422,8 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // What else to check at a payload halfword: a set of CHECK_* bits. AT_MOST_COUNT and the limits are set in
-  // every halfword of their field.
+  // Further checks at a payload halfword: a set of CHECK_* bits. AT_MOST_COUNT and the limits are set in every
+  // halfword of their field.
   function automatic logic [5:0] payload_checks(input logic [7:0] op,
                                                 input logic [5:0] index,
                                                 input logic [31:0] engines);
@@ -1476,8 +1476,8 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Descriptors of the units that are built in (rtl/regs/units.toml), the first in the lowest bits, 0 behind the
-  // last; a constant for each card.
+  // Table of descriptors of a card (rtl/regs/units.toml): the first descriptor in the lowest bits, zeros after the
+  // last. It is constant in each card.
   function automatic logic [2047:0] unit_descriptors(input logic [31:0] engines,
                                                      input int axes,
                                                      input int snapshot_areas,

@@ -16,10 +16,10 @@ namespace trammel::driver {
 struct Status {
   bool busy = false;          // something is under way or queued
   bool direct = false;        // a one-shot line (direct move) is under way
-  bool path_active = false;   // a path is under way
+  bool path_active = false;   // a path or a direct move is under way
   bool feed_active = false;   // a feed piece is under way
   bool held = false;          // the time base's ratio is 0
-  bool ended = false;         // END was reached
+  bool ended = false;         // END was executed, and nothing has begun since
   bool faulted = false;       // FAULT is not 0
   bool refused = false;       // REFUSAL is not 0
   bool snapshot = false;      // a snapshot is under way
@@ -30,7 +30,7 @@ struct Status {
   bool probed = false;        // a probe has tripped; cleared by clear_probe()
   bool probe_missed = false;  // probing paths ended without an edge
   bool waiting = false;       // the card waits for an input
-  bool underrun = false;      // the time base is held because the queues run dry
+  bool underrun = false;      // the under-run hold is active, or a piece that begins from rest waits for commands
   bool stale = false;         // position streaming continues without a new period
   bool button_hold = false;   // the feed hold input holds the card until cycle start
   bool enabled = false;       // the drives are enabled (EnableSequence)

@@ -16,65 +16,72 @@ inline constexpr std::uint32_t kMapVersionValue = 0x00030006;
 inline constexpr std::uint32_t kCommandsVersionValue = 3;
 inline constexpr std::uint32_t kWindowBytes = 4096;
 
-// Numbers that follow from how the card is built.
+// Numbers that the design of the card determines.
 namespace constant {
 inline constexpr std::uint32_t kFractionBits = 40;  // Fraction bits of a pulse generator's phase and increment
 inline constexpr std::uint32_t kRateFractionBits =
     64;  // Fraction bits of the feed generator's rate, acceleration and jerk
 inline constexpr std::uint32_t kUpdateClocks =
-    32;  // Enabled clocks from one addition of acceleration and jerk to the next
-inline constexpr std::uint32_t kFeedSwapClocks = 24;  // Clocks that swaps of the feed generator are apart at least
-inline constexpr std::uint32_t kRatioFractionBits =
-    16;  // Fraction bits of the time base's ratio as the registers have it
-inline constexpr std::uint32_t kSlewFractionBits = 28;  // Fraction bits of the time base's ratio inside, and of SLEW
-inline constexpr std::uint32_t kSlewClocks = 4;         // Clocks from one move of the ratio to the next
+    32;  // Enabled clocks from one update of rate and acceleration to the next
+inline constexpr std::uint32_t kFeedSwapClocks =
+    24;  // Minimum number of clocks between two swaps of the feed generator
+inline constexpr std::uint32_t kRatioFractionBits = 16;  // Fraction bits of the time base's ratio in the registers
+inline constexpr std::uint32_t kSlewFractionBits = 28;   // Fraction bits of the ratio inside the time base, and of SLEW
+inline constexpr std::uint32_t kSlewClocks = 4;          // Clocks from one update of the ratio to the next
 inline constexpr std::uint32_t kUnderrunReserveTicks =
-    256;  // Feed ticks that the under-run hold keeps queued beyond what a stop takes
+    256;  // Feed ticks that the under-run hold keeps queued in addition to those that a stop takes
 inline constexpr std::uint32_t kShaperTurnoverClocks =
-    6;  // Clocks that the shaper adds to max(1, length) + space from pulse to pulse; one less for length 0
+    6;  // Clocks between two leading edges beyond max(1, STEP_LENGTH) + STEP_SPACE; one less if STEP_LENGTH is 0
 inline constexpr std::uint32_t kShaperReversalClocks =
-    12;  // Clocks that the shaper adds to space + hold + setup from trailing to leading edge at a reversal
-inline constexpr std::uint32_t kDecodeClocks = 8;      // Clocks to decode a line, without those for each axis
-inline constexpr std::uint32_t kDecodeAxisClocks = 3;  // Clocks to decode a line, for each of its axes
+    12;  // Clocks from trailing to leading edge at a reversal, beyond STEP_SPACE + DIR_HOLD + DIR_SETUP
+inline constexpr std::uint32_t kDecodeClocks = 8;  // Clocks for the decoding of a line, in addition to those per axis
+inline constexpr std::uint32_t kDecodeAxisClocks = 3;  // Clocks for the decoding of a line, per axis of the line
 inline constexpr std::uint32_t kAccumulatorTickClocks =
-    9;  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
-inline constexpr std::uint32_t kAccumulator8TickClocks = 17;  // The same in 8 directions
+    9;  // Minimum number of clocks between two path ticks of the deviation accumulator in 4 directions
+inline constexpr std::uint32_t kAccumulator8TickClocks =
+    17;  // Minimum number of clocks between two path ticks of the deviation accumulator in 8 directions
 inline constexpr std::uint32_t kAccumulatorHandoverClocks =
-    30;  // Clocks within which an arc begins once the accumulator is free
-inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a centre in ARC's deviation and gradients
-inline constexpr std::uint32_t kPathDelayClocks = 3;     // Clocks from a feed tick to the path tick that it is
-inline constexpr std::uint32_t kAnswerClocks = 500;  // Clocks within which every access is answered with up to 4 axes
+    30;  // Longest time from the clock in which the accumulator is free to the start of the next arc, in clocks
+inline constexpr std::uint32_t kCentreFractionBits =
+    8;  // Fraction bits of the centre in the deviation and the gradients of ARC
+inline constexpr std::uint32_t kPathDelayClocks = 3;  // Clocks from a feed tick to the same tick in the path domain
+inline constexpr std::uint32_t kAnswerClocks =
+    500;  // Longest time until an access is answered, with up to 4 axes, in clocks
 inline constexpr std::uint32_t kAnswerClocks8Axes =
-    700;                                          // Clocks within which every access is answered with 5 to 8 axes
-inline constexpr std::uint32_t kPieceSilent = 4;  // Flag of FEED beside its class: the ticks make no steps
+    700;  // Longest time until an access is answered, with 5 to 8 axes, in clocks
+inline constexpr std::uint32_t kPieceSilent = 4;  // Flag of FEED: the ticks of the piece make no steps
 inline constexpr std::uint32_t kPieceDoubling =
-    8;  // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force
-inline constexpr std::uint32_t kMaxSlewShift = 3;  // The most doublings of SLEW that a piece may have
-inline constexpr std::uint32_t kClassFeed = 0;     // Class of a feed piece: what the feed override slows down
-inline constexpr std::uint32_t kClassRapid = 1;    // Class of a feed piece: rapid positioning, with a ratio of its own
-inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threading and the like, which a hold lets end
+    8;  // Lowest bit of the slew shift in the flags of FEED: value of one doubling of SLEW
+inline constexpr std::uint32_t kMaxSlewShift = 3;  // Largest slew shift of a piece
+inline constexpr std::uint32_t kClassFeed = 0;     // Class of a feed piece: motion at the programmed feed
+inline constexpr std::uint32_t kClassRapid = 1;    // Class of a feed piece: rapid motion
+inline constexpr std::uint32_t kClassFixed =
+    2;  // Class of a feed piece: motion that a hold must not interrupt, such as threading; a hold waits for its end
 }  // namespace constant
 
-// Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).
+// Engines: bit numbers in the mask of built-in engines (rtl/regs/units.toml).
 namespace engine {
-inline constexpr std::uint32_t kLines = 0;           // Lines: pulse generators; on every card.
-inline constexpr std::uint32_t kAccumulator = 1;     // ARC: deviation accumulator, 4 directions.
-inline constexpr std::uint32_t kAccumulator8 = 2;    // The accumulator's 8-direction step rule.
-inline constexpr std::uint32_t kArcGenerator = 3;    // ARC_CHORD: arc generator.
-inline constexpr std::uint32_t kJerk = 4;            // Jerk in the feed generator.
-inline constexpr std::uint32_t kDirectMode = 5;      // Direct mode.
-inline constexpr std::uint32_t kUnderrunHold = 6;    // Hold on the path when the queues run dry.
-inline constexpr std::uint32_t kPathCommands = 7;    // OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END; inputs and outputs.
-inline constexpr std::uint32_t kStreaming = 8;       // Position streaming.
-inline constexpr std::uint32_t kClasses = 9;         // Classes of pieces: ratios for rapid and fixed.
-inline constexpr std::uint32_t kWatermarks = 10;     // Watermarks of the queues.
-inline constexpr std::uint32_t kMachineInputs = 11;  // Inputs with filters and roles; limits, drive faults, feed hold.
-inline constexpr std::uint32_t kCaptures = 12;       // Captures of inputs' edges.
-inline constexpr std::uint32_t kEmergencyStop = 13;  // A pin for the emergency stop.
-inline constexpr std::uint32_t kEnables = 14;     // Roles of outputs: drive enable, brake, charge pump, card healthy.
-inline constexpr std::uint32_t kSoftLimits = 15;  // Soft limits: comparators of the position at both ends of each axis.
-inline constexpr std::uint32_t kCaptureFifo = 16;  // A queue of 16 captures.
-inline constexpr std::uint32_t kPwm = 17;          // PWM on two channels of outputs, and the command PWM.
+inline constexpr std::uint32_t kLines = 0;         // Lines on the pulse generators; on every card.
+inline constexpr std::uint32_t kAccumulator = 1;   // ARC on the deviation accumulator, in 4 directions.
+inline constexpr std::uint32_t kAccumulator8 = 2;  // Step rule of the accumulator with 8 directions.
+inline constexpr std::uint32_t kArcGenerator = 3;  // ARC_CHORD on the arc generator.
+inline constexpr std::uint32_t kJerk = 4;          // Jerk in the feed generator.
+inline constexpr std::uint32_t kDirectMode = 5;    // Direct mode.
+inline constexpr std::uint32_t kUnderrunHold = 6;  // Hold along the path before the queues run dry (under-run hold).
+inline constexpr std::uint32_t kPathCommands =
+    7;  // Commands OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END; inputs and outputs.
+inline constexpr std::uint32_t kStreaming = 8;  // Position streaming.
+inline constexpr std::uint32_t kClasses =
+    9;  // Classes of feed pieces: own ratios for rapid and fixed pieces, slew shifts.
+inline constexpr std::uint32_t kWatermarks = 10;  // Watermarks of the queues.
+inline constexpr std::uint32_t kMachineInputs =
+    11;  // Filters and roles of inputs; limits, drive faults, probe and tool setter as causes of a stop; feed hold.
+inline constexpr std::uint32_t kCaptures = 12;       // Captures of edges of inputs.
+inline constexpr std::uint32_t kEmergencyStop = 13;  // Pin for the emergency stop.
+inline constexpr std::uint32_t kEnables = 14;      // Roles of outputs: drive enable, brake, charge pump, card healthy.
+inline constexpr std::uint32_t kSoftLimits = 15;   // Soft limits at both ends of each axis.
+inline constexpr std::uint32_t kCaptureFifo = 16;  // Queue of 16 captures.
+inline constexpr std::uint32_t kPwm = 17;          // Two channels of PWM on outputs, and the command PWM.
 }  // namespace engine
 
 // The same as masks.
@@ -103,30 +110,29 @@ inline constexpr std::array<std::string_view, 18> kEngineNames{
     "underrun_hold", "path_commands",  "streaming",     "classes",       "watermarks",   "machine_inputs",
     "captures",      "emergency_stop", "enables",       "soft_limits",   "capture_fifo", "pwm"};
 
-// What a register does on an access; a write to Constant, Live and Snapshot is refused as READ_ONLY, a read of
-// Command as WRITE_ONLY.
+// Kinds of registers. A write to Constant, Live and Snapshot is refused as READ_ONLY, a read of Command as WRITE_ONLY.
 enum class Access {
   Constant,   // fixed since reset
-  Live,       // as the card stands
-  Snapshot,   // as the card stood when CONTROL.snapshot was written
-  ClearOnes,  // live; writing ones clears
-  Setting,    // reads back what was written
-  Command,    // write only; acts at once
+  Live,       // shows the present state
+  Snapshot,   // shows a latched state
+  ClearOnes,  // shows the present state; writing ones clears
+  Setting,    // reads back the value that was written
+  Command,    // write-only; acts at once
 };
 
 struct Register {
   std::string_view name;
-  std::uint32_t address;  // byte address of the register, of an array's slot for axis 0
-  std::uint32_t count;    // slots, 1 when it is not an array
-  std::int32_t stride;    // bytes from slot to slot, negative when an array runs downwards, 0 when it is none
+  std::uint32_t address;  // byte address; of an array: of its slot for axis 0
+  std::uint32_t count;    // number of slots; 1 if it is not an array
+  std::int32_t stride;    // bytes from slot to slot; negative if an array runs downwards; 0 if it is not an array
   Access access;
-  std::uint32_t reset;    // value after reset; of a constant with `from_card` not known here
-  std::uint32_t mask;     // bits with meaning; a write of any other bit is refused as BAD_VALUE
-  std::uint32_t limited;  // bits of the field that `minimum` and `maximum` bound, 0 when there is none
-  std::uint32_t minimum;  // of that field, shifted down
+  std::uint32_t reset;    // value after reset; meaningless for a constant with `from_card`
+  std::uint32_t mask;     // bits with meaning; setting any other bit is refused as BAD_VALUE
+  std::uint32_t limited;  // bits of the field that `minimum` and `maximum` limit; 0: no field has limits
+  std::uint32_t minimum;  // of that field, shifted to bit 0
   std::uint32_t maximum;
-  std::uint32_t engine;    // engine without which the register is an unknown address; 0 (lines): always there
-  std::uint32_t optional;  // bits of `mask` that have a meaning only with `optional_engine`
+  std::uint32_t engine;    // engine without which the address is unknown; 0 (lines): every card has the register
+  std::uint32_t optional;  // bits of `mask` that need `optional_engine`
   std::uint32_t optional_engine;
   bool only_present_axes;  // slots of absent axes are unknown addresses
   bool from_card;          // the value comes from the card's parameters, straps or state
@@ -316,7 +322,7 @@ constexpr std::uint32_t input_filter(std::uint32_t index) { return 0xE00 + 4 * i
 constexpr std::uint32_t role(std::uint32_t index) { return 0xE80 + 4 * index; }
 }  // namespace reg
 
-// Areas of latched values: their byte addresses, and their registers in any of them.
+// Areas of latched values: the byte address of each area, and that of a register in a given area.
 enum class Area : std::uint32_t {
   Snap = 0x200,
   Stop = 0x280,
@@ -343,7 +349,7 @@ constexpr std::uint32_t position(Area area, std::uint32_t axis) {
 }
 }  // namespace reg
 
-// Masks of fields, and shifts of those wider than a bit.
+// Masks of fields, and shifts of fields wider than one bit.
 namespace field {
 inline constexpr std::uint32_t kMapVersionMinor = 0xFFFF;
 inline constexpr std::uint32_t kMapVersionMinorShift = 0;
@@ -749,20 +755,20 @@ struct Unit {
   std::uint8_t tag;
   std::uint8_t major;
   std::uint8_t minor;
-  std::uint32_t engine;     // engine without which the unit is not built in; 0 (lines): on every card
-  UnitCount count;          // which number of the card its instances are
-  std::uint32_t instances;  // with Fixed: how many
+  std::uint32_t engine;     // engine that the unit needs; 0 (lines): every card has it
+  UnitCount count;          // property of the card that gives the number of instances
+  std::uint32_t instances;  // number of instances with Fixed
   bool has_registers;
   std::uint32_t first;      // byte address of the first register of the first instance
-  std::int32_t first_step;  // bytes that it moves with each axis of the card beyond the first
-  std::uint32_t last;       // and of the last one
+  std::int32_t first_step;  // bytes by which `first` moves per further axis of the card
+  std::uint32_t last;       // byte address of the last register of the first instance
   std::int32_t last_step;
   std::uint32_t stride;                   // words from one instance to the next
   std::uint32_t load_unit;                // number on the load bus, 31: none
-  std::array<std::uint32_t, 8> features;  // by bit: the engine that sets it, 0: no such feature
+  std::array<std::uint32_t, 8> features;  // by bit: the engine that sets it; 0: no feature
 };
 
-// What one descriptor says.
+// Content of one descriptor.
 struct Descriptor {
   std::uint8_t tag = 0;
   std::uint8_t major = 0;
@@ -791,47 +797,48 @@ constexpr Descriptor descriptor_of(std::uint32_t word_0, std::uint32_t word_1) {
           static_cast<std::uint8_t>(bits(word_1, 25, 5))};
 }
 
-inline constexpr std::uint32_t kDescriptorTable = 0x100;  // byte address of the first
-inline constexpr std::uint32_t kDescriptorSlots = 32;     // the ending one included
+inline constexpr std::uint32_t kDescriptorTable = 0x100;  // byte address of the table
+inline constexpr std::uint32_t kDescriptorSlots = 32;     // capacity, including the end of the table
 
 namespace unit {
-inline constexpr std::uint8_t kTimeBase = 1;     // Share of clocks that are enabled: ratio, slew, hold.
-inline constexpr std::uint8_t kStopControl = 2;  // Causes of a stop, and the reaction to each.
-inline constexpr std::uint8_t kQueues = 3;       // Geometry queue and feed queue.
-inline constexpr std::uint8_t kFeedGenerator =
-    4;  // Rate, acceleration and jerk of feed pieces; from 1.1 on silent pieces, which run at any ratio from 1.2 on.
-inline constexpr std::uint8_t kAxes = 5;  // Pulse generator, step shaper and position counter of each axis.
+inline constexpr std::uint8_t kTimeBase = 1;       // Time base: the ratio of clocks that are enabled, slew, hold.
+inline constexpr std::uint8_t kStopControl = 2;    // Causes of a stop and their reactions.
+inline constexpr std::uint8_t kQueues = 3;         // Geometry queue and feed queue.
+inline constexpr std::uint8_t kFeedGenerator = 4;  // Rate, acceleration and jerk of feed pieces. From 1.1 on also
+                                                   // silent pieces; from 1.2 on they run at any ratio.
+inline constexpr std::uint8_t kAxes = 5;           // Pulse generator, step shaper and position counter of each axis.
 inline constexpr std::uint8_t kSnapshots =
-    6;  // Areas of latched values: SNAP, STOP; with path commands also PROBE and MARK.
-inline constexpr std::uint8_t kHostPorts = 7;     // Ports that a host may come by.
-inline constexpr std::uint8_t kAccumulator = 8;   // Deviation accumulator: circles, ellipses (ARC).
-inline constexpr std::uint8_t kArcGenerator = 9;  // Arc generator: circles and helices in chords (ARC_CHORD).
+    6;  // Areas of latched values: SNAP and STOP, with path commands also PROBE and MARK.
+inline constexpr std::uint8_t kHostPorts = 7;     // Host ports.
+inline constexpr std::uint8_t kAccumulator = 8;   // Deviation accumulator: circles and ellipses (ARC).
+inline constexpr std::uint8_t kArcGenerator = 9;  // Arc generator: circles and helices as chords (ARC_CHORD).
 inline constexpr std::uint8_t kDirectMode =
-    10;  // One-shot lines: frequency, count and direction of each axis, length, START.
-inline constexpr std::uint8_t kUnderrunHold = 11;  // Hold on the path before the queues run dry.
-inline constexpr std::uint8_t kPathCommands = 12;  // OUTPUT, MARK, WAIT_INPUT, PROBE and PROBE_END.
+    10;  // Direct moves: frequency, count and direction of each axis, length, START.
+inline constexpr std::uint8_t kUnderrunHold = 11;  // Hold along the path before the queues run dry.
+inline constexpr std::uint8_t kPathCommands = 12;  // Commands OUTPUT, MARK, WAIT_INPUT, PROBE and PROBE_END.
 inline constexpr std::uint8_t kInputs = 13;        // Inputs with synchroniser and polarity.
 inline constexpr std::uint8_t kOutputs =
-    14;  // Outputs, with levels at rest; from 1.1 on with levels at the cause of a stop.
-inline constexpr std::uint8_t kPositionStreaming = 15;  // A line for each period of a host that streams positions.
+    14;  // Outputs with safe levels at rest. From 1.1 on also with safe levels at the cause of a stop.
+inline constexpr std::uint8_t kPositionStreaming = 15;  // Position streaming: the host sends one line per period.
 inline constexpr std::uint8_t kWatchdog =
-    16;  // Watchdog over the host; from 1.1 on also over the link of the session that writes (LINK_TIMEOUT).
-inline constexpr std::uint8_t kRoles = 17;          // Filter of each input, and roles: masks of inputs.
-inline constexpr std::uint8_t kCaptures = 18;       // Captures: time and positions of the edges of inputs, an area of
-                                                    // latched values each; the probe's edge likewise.
-inline constexpr std::uint8_t kEmergencyStop = 19;  // Emergency stop: a pin with a latch that needs no clock.
+    16;  // Watchdog of the host. From 1.1 on also a watchdog of the link to the writing session (LINK_TIMEOUT).
+inline constexpr std::uint8_t kRoles = 17;     // Filters of the inputs, and masks of the inputs that have a role.
+inline constexpr std::uint8_t kCaptures = 18;  // Captures: time and positions at edges of inputs, one area of latched
+                                               // values per unit. The PROBE area is latched in the same way.
+inline constexpr std::uint8_t kEmergencyStop = 19;  // Emergency stop: a pin with an asynchronous latch.
 inline constexpr std::uint8_t kLimits =
-    20;  // Limit switches, drive faults, probe and tool setter as causes of a stop; feed hold and cycle start.
-inline constexpr std::uint8_t kPlace =
-    21;  // The machine's place, which outlives the host: valid and homed axes, scales; zeros beside the axes' settings.
-inline constexpr std::uint8_t kEnables =
-    22;  // Drive enable, brake, charge pump and card healthy: roles of outputs, and the sequence of the drives.
+    20;  // Limit switches, drive faults, probe and tool setter as causes of a stop; feed hold and cycle start buttons.
+inline constexpr std::uint8_t kPlace = 21;  // Place of the machine, which the card keeps when the host restarts: valid
+                                            // and homed axes, scales. MACHINE_ZERO is among the settings of the axes.
+inline constexpr std::uint8_t kEnables = 22;  // Drive enable, brake, charge pump and card healthy: roles of outputs,
+                                              // and the sequence of drive enable and brake.
 inline constexpr std::uint8_t kSoftLimits =
-    23;  // Soft limits: comparators of the position, beside the axes' settings; SOFT_LIMITS switches them on.
-inline constexpr std::uint8_t kPwm = 24;  // Pulse width modulation on outputs: channels, whose duty commands set (PWM).
+    23;  // Soft limits of the positions. The limits are among the settings of the axes; SOFT_LIMITS switches them on.
+inline constexpr std::uint8_t kPwm =
+    24;  // Pulse width modulation of outputs. The command PWM sets the duty of a channel.
 }  // namespace unit
 
-// Units on the load bus, of their first instance.
+// Numbers of units on the load bus, of the first instance of each.
 namespace load_unit {
 inline constexpr unsigned kAxes = 0;
 inline constexpr unsigned kAccumulator = 10;
@@ -867,14 +874,14 @@ inline constexpr std::array<Unit, 24> kUnits{{
     {"pwm", 24, 1, 0, 17, UnitCount::Fixed, 2, true, 1736, 0, 1736, 0, 1, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
 }};
 
-// What decides a card's descriptors.
+// Properties of a card that determine its descriptors.
 struct CardShape {
   std::uint32_t engines;
   std::uint32_t axes;
   std::uint32_t ports;
   std::uint32_t inputs;
   std::uint32_t outputs;
-  std::uint32_t captures;  // units
+  std::uint32_t captures;  // number of capture units
 };
 
 constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
@@ -896,7 +903,7 @@ constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
   }
 }
 
-// The descriptor of a unit that is built into such a card.
+// The descriptor of a unit that this card has.
 constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
   Descriptor d{unit.tag, unit.major, unit.minor};
   d.instances = static_cast<std::uint8_t>(instances_of(unit, card));
@@ -916,7 +923,7 @@ constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
   return d;
 }
 
-// Calls put(byte address, word) for each word of the table of such a card, the ending tag included.
+// Calls put(byte address, word) for each word of this card's table, including the tag that ends it.
 template <typename Put>
 constexpr void put_descriptors(const CardShape& card, const Put& put) {
   std::uint32_t address = kDescriptorTable;
@@ -930,28 +937,28 @@ constexpr void put_descriptors(const CardShape& card, const Put& put) {
   put(address, std::uint32_t{0});
 }
 
-// Why an access or a command was refused (REFUSAL.reason).
+// Reasons of a refusal (REFUSAL.reason).
 enum class Reason : std::uint8_t {
   None = 0,           // Nothing was refused.
-  UnknownOpcode = 1,  // The command's opcode has no meaning, or its engine is not built in.
-  BadLength = 2,      // The command's length does not fit its opcode and axis mask.
-  BadMask = 3,  // The command's axis mask is empty, names an absent axis or does not fit its opcode; or its flags have
-                // no meaning.
-  BadNumber = 4,  // The command's number is not the successor of the last accepted one's.
+  UnknownOpcode = 1,  // The opcode is unknown, or the card lacks the engine that the command needs.
+  BadLength = 2,      // The length of the command does not match its opcode and axis mask.
+  BadMask = 3,    // The axis mask is empty, names an axis that the card lacks or does not fit the opcode; or the flags
+                  // are invalid.
+  BadNumber = 4,  // The number of the command does not follow that of the last accepted command.
   NoRoom = 5,     // The queue has no room for the whole command.
-  BadField = 6,   // A field of the command is out of its range.
-  Truncated = 7,  // A flush came inside the command.
-  Busy = 8,  // The access is not possible while the card is doing what it does, or the stream belongs to another port.
-  ReadOnly = 9,         // A write to a read-only register.
-  UnknownAddress = 10,  // No register at this address.
-  PartialWrite = 11,    // A write of less than 32 bits.
-  BadValue = 12,        // The value is out of range, or bits without meaning are set.
-  StreamClosed = 13,    // A word for the stream after a refused command, before an abort.
-  WriteOnly = 14,       // A read of a write-only register.
-  Faulted = 15,         // A word for the stream or a START while a fault stands.
+  BadField = 6,   // A field of the command is out of range, or its padding is not 0.
+  Truncated = 7,  // A flush came before the command was complete.
+  Busy = 8,      // A direct move or other motion is under way or queued, or another port is in the middle of a command.
+  ReadOnly = 9,  // The register is read-only.
+  UnknownAddress = 10,  // There is no register at this address.
+  PartialWrite = 11,    // The write has less than 32 bits.
+  BadValue = 12,        // The value is out of range, or a reserved bit is set.
+  StreamClosed = 13,    // The stream is closed after a refused command, until an abort.
+  WriteOnly = 14,       // The register is write-only.
+  Faulted = 15,         // The card takes neither words of the stream nor START while FAULT is not 0.
 };
 
-// The reason as the documentation spells it; "?" for a value without meaning.
+// Name of a reason as in the documentation; "?" for an unknown value.
 constexpr std::string_view reason_name(std::uint8_t reason) {
   switch (reason) {
     case 0:
@@ -991,60 +998,60 @@ constexpr std::string_view reason_name(std::uint8_t reason) {
   }
 }
 
-// What the reason means, one sentence.
+// Meaning of a reason, one sentence.
 constexpr std::string_view reason_text(std::uint8_t reason) {
   switch (reason) {
     case 0:
       return "Nothing was refused.";
     case 1:
-      return "The command's opcode has no meaning, or its engine is not built in.";
+      return "The opcode is unknown, or the card lacks the engine that the command needs.";
     case 2:
-      return "The command's length does not fit its opcode and axis mask.";
+      return "The length of the command does not match its opcode and axis mask.";
     case 3:
-      return "The command's axis mask is empty, names an absent axis or does not fit its opcode; or its flags have no "
-             "meaning.";
+      return "The axis mask is empty, names an axis that the card lacks or does not fit the opcode; or the flags are "
+             "invalid.";
     case 4:
-      return "The command's number is not the successor of the last accepted one's.";
+      return "The number of the command does not follow that of the last accepted command.";
     case 5:
       return "The queue has no room for the whole command.";
     case 6:
-      return "A field of the command is out of its range.";
+      return "A field of the command is out of range, or its padding is not 0.";
     case 7:
-      return "A flush came inside the command.";
+      return "A flush came before the command was complete.";
     case 8:
-      return "The access is not possible while the card is doing what it does, or the stream belongs to another port.";
+      return "A direct move or other motion is under way or queued, or another port is in the middle of a command.";
     case 9:
-      return "A write to a read-only register.";
+      return "The register is read-only.";
     case 10:
-      return "No register at this address.";
+      return "There is no register at this address.";
     case 11:
-      return "A write of less than 32 bits.";
+      return "The write has less than 32 bits.";
     case 12:
-      return "The value is out of range, or bits without meaning are set.";
+      return "The value is out of range, or a reserved bit is set.";
     case 13:
-      return "A word for the stream after a refused command, before an abort.";
+      return "The stream is closed after a refused command, until an abort.";
     case 14:
-      return "A read of a write-only register.";
+      return "The register is write-only.";
     case 15:
-      return "A word for the stream or a START while a fault stands.";
+      return "The card takes neither words of the stream nor START while FAULT is not 0.";
     default:
       return "Unknown reason.";
   }
 }
 
 enum class Opcode : std::uint8_t {
-  Line = 1,        // A straight line of the masked axes over `count` feed ticks.
-  Arc = 2,         // An arc of a circle or an axis-parallel ellipse on the deviation accumulator.
-  ArcChord = 3,    // An arc of a circle in chords, further axes along lines (helices), on the arc generator.
-  Feed = 16,       // One piece of the feed profile.
-  Dwell = 32,      // Barrier: both queues wait for each other, then for `count` clocks of real time.
-  End = 33,        // Barrier: end of the program; latches STATUS.ended.
-  Output = 34,     // Sets and clears outputs with the last tick of the path before it.
-  Mark = 35,       // Counts MARKS and latches the MARK area with the last tick of the path before it.
-  WaitInput = 36,  // Barrier: both queues wait for each other, then for an input or for `count` clocks.
-  Probe = 37,      // Arms the probe for the paths up to PROBE_END, once no path runs.
-  ProbeEnd = 38,   // Barrier: end of the probing paths; where the probe has tripped it waits for CONTROL.probe_clear.
-  Pwm = 39,        // Sets the duty of a PWM channel with the last tick of the path before it.
+  Line = 1,      // A straight line of the axes in the mask over N feed ticks.
+  Arc = 2,       // An arc of a circle or of an axis-parallel ellipse, on the deviation accumulator.
+  ArcChord = 3,  // An arc of a circle as chords, on the arc generator. Further axes move along lines (helices).
+  Feed = 16,     // A piece of the feed profile.
+  Dwell = 32,   // Barrier: both queues wait for each other, then for `count` clocks. A hold does not stretch this time.
+  End = 33,     // Barrier: end of the program. Sets STATUS.ended.
+  Output = 34,  // Sets and clears outputs at the last tick of the preceding path.
+  Mark = 35,    // Increments MARKS and latches the area MARK at the last tick of the preceding path.
+  WaitInput = 36,  // Barrier: both queues wait for each other, then until an input has a level, or for `count` clocks.
+  Probe = 37,      // Waits until no path runs, then arms the probe for the paths up to PROBE_END.
+  ProbeEnd = 38,   // Barrier: end of the probing paths. If the probe has tripped, it waits for CONTROL.probe_clear.
+  Pwm = 39,        // Sets the duty of a PWM channel at the last tick of the preceding path.
 };
 
 inline constexpr std::size_t kMaxFields = 11;
@@ -1054,26 +1061,26 @@ enum class FieldKind {
   Signed,  // sign-extended to whole halfwords
 };
 
-// Which axes a command's mask may name.
+// Rule for the mask byte of a command.
 enum class MaskRule {
   None,          // must be 0
   Any,           // at least one axis, and only axes that the card has
   Plane,         // exactly the two axes of the field `plane`
   PlaneAndAxes,  // the two axes of the field `plane`, and any further ones that the card has
-  Flags,         // no axes: `flags_free`, and in the other bits up to `flags_maximum`, 0 without `flags_engine`
+  Flags,         // flags: `flags_free`, and in the other bits a value up to `flags_maximum`, 0 without `flags_engine`
 };
 
 struct Field {
   std::string_view name;
   FieldKind kind;
-  std::uint32_t bits;    // width with meaning
-  std::uint32_t offset;  // halfwords from the start of the payload (after the count)
+  std::uint32_t bits;    // number of bits with meaning
+  std::uint32_t offset;  // halfwords from the start of the payload, which follows the count
   std::uint32_t halfwords;
-  bool per_axis;  // once for each axis of the mask (but the first `axes_in_base`: the plane's), lowest first
+  bool per_axis;  // repeated for each axis of the mask except the `axes_in_base` of the plane, lowest first
   std::uint64_t minimum;
-  std::uint64_t limit;     // largest magnitude where the bits allow more, else 0
-  std::uint32_t mask;      // of a one-halfword field: bits that may be set, else 0
-  std::uint32_t optional;  // bits besides `mask` that may be set with `optional_engine`
+  std::uint64_t limit;     // largest magnitude if the bits allow more, else 0
+  std::uint32_t mask;      // of a field of one halfword: bits that may be set, else 0
+  std::uint32_t optional;  // further bits that may be set with `optional_engine`
   std::uint32_t optional_engine;
   bool at_most_count;  // must not exceed the command's count
 };
@@ -1083,16 +1090,16 @@ struct Command {
   Opcode opcode;
   bool to_geometry;
   bool to_feed;
-  std::uint32_t engine;  // engine without which the opcode is unknown; 0 (lines): always known
-  bool built;            // false: only laid out yet, and unknown whatever the engines are
+  std::uint32_t engine;  // engine without which the opcode is unknown; 0 (lines): every card knows it
+  bool built;            // false: only the layout is defined; the opcode is unknown on every card
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
   std::uint32_t flags_engine;
   std::uint8_t flags_free;
   std::uint64_t count_minimum;
   std::uint64_t count_maximum;
-  std::uint32_t base_halfwords;  // on the wire: header, count and the payload's fixed part
-  std::uint32_t axis_halfwords;  // payload for each axis of the mask but `axes_in_base` of them
+  std::uint32_t base_halfwords;  // on the wire: header, count and the fixed part of the payload
+  std::uint32_t axis_halfwords;  // payload per axis of the mask, except for `axes_in_base` axes
   std::uint32_t axes_in_base;
   std::size_t field_count;
   std::array<Field, kMaxFields> fields;
@@ -1268,7 +1275,7 @@ inline constexpr std::array<Command, 12> kCommands{{
        Field{"gain", FieldKind::Unsigned, 16, 2, 1, false, 0, 0x0, 0x0, 0x0, 0, false}}}},
 }};
 
-// Layout of a command, nullptr when the opcode has no meaning.
+// Layout of a command; nullptr if the opcode is unknown.
 constexpr const Command* find_command(std::uint8_t opcode) {
   for (const Command& command : kCommands) {
     if (static_cast<std::uint8_t>(command.opcode) == opcode) return &command;
@@ -1293,17 +1300,17 @@ constexpr std::uint32_t words(const Command& command, std::uint8_t mask) { retur
 
 constexpr bool has_engine(std::uint32_t engines, std::uint32_t engine) { return (engines >> engine & 1) != 0; }
 
-// The opcode has a meaning on a card with these engines.
+// Whether a card with these engines knows the opcode.
 constexpr bool is_known(const Command& command, std::uint32_t engines) {
   return command.built && has_engine(engines, command.engine);
 }
 
-// With MaskRule::Flags: the mask byte has a meaning on a card with these engines.
+// With MaskRule::Flags: whether a card with these engines accepts the mask byte.
 constexpr bool flags_good(const Command& command, std::uint8_t flags, std::uint32_t engines) {
   return (flags & ~command.flags_free) <= (has_engine(engines, command.flags_engine) ? command.flags_maximum : 0);
 }
 
-// Bits of the register, of the one-halfword field, that have a meaning on a card with these engines.
+// Bits of a register, or of a field of one halfword, that a card with these engines accepts.
 constexpr std::uint32_t bits_with_meaning(const Register& entry, std::uint32_t engines) {
   return has_engine(engines, entry.optional_engine) ? entry.mask : entry.mask & ~entry.optional;
 }
@@ -1311,7 +1318,7 @@ constexpr std::uint32_t bits_with_meaning(const Field& field, std::uint32_t engi
   return has_engine(engines, field.optional_engine) ? field.mask | field.optional : field.mask;
 }
 
-// Halfwords that the command takes in each of its queues: halfword 1 and the padding are dropped.
+// Halfwords of the command in each of its queues, which store neither halfword 1 nor the padding.
 constexpr std::uint32_t queue_halfwords(const Command& command, std::uint8_t mask) {
   return halfwords(command, mask) - 1;
 }
@@ -1321,7 +1328,7 @@ constexpr std::uint32_t slot_address(const Register& entry, std::uint32_t index)
   return entry.address + index * static_cast<std::uint32_t>(entry.stride);
 }
 
-// The register at a byte address and its slot; nullptr when there is none. Whatever axes the card has.
+// The register at a byte address and its slot; nullptr if there is none. It does not depend on the card's axes.
 struct Slot {
   const Register* entry;
   std::uint32_t index;
