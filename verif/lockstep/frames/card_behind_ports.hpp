@@ -1,5 +1,5 @@
-// The card with all four host ports beside its model: compares the pins of ports and axes in every cycle. The rules
-// of each port are judged by checkers that do not know the design (verif/systemc/checkers).
+// The card with all four host ports beside its model: compares the pins of ports, axes and outputs in every cycle. The
+// rules of each port are judged by checkers that do not know the design (verif/systemc/checkers).
 #pragma once
 
 #include <Vdut.h>
@@ -9,7 +9,7 @@
 #include "host_pins.hpp"
 #include "pin_models.hpp"
 #include "spi_master.hpp"
-#include "trammel/model/core_model.hpp"
+#include "trammel/model/card_model.hpp"
 #include "trammel/model/host_ports.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "uart_link.hpp"
@@ -20,21 +20,28 @@ class CardBehindPorts {
  public:
   static constexpr unsigned kAxes = 4;
   static constexpr unsigned kBreakBits = 10;
-  static constexpr std::uint64_t kComparedSignals = 7;
+  static constexpr std::uint64_t kComparedSignals = 8;
 
-  CardBehindPorts()
-      : check_("card_with_ports", 0),
-        core_(core_config()),
+  struct Straps {
+    std::uint8_t idle_level = 0;       // {second pins, first pins}
+    std::uint8_t output_idle = 0;      // levels of the outputs in reset
+    bool emergency_stop_level = true;  // level of the pin that means stop
+  };
+
+  CardBehindPorts() : CardBehindPorts(Straps()) {}
+  explicit CardBehindPorts(const Straps& straps)
+      : emergency_stop(!straps.emergency_stop_level),
+        check_("card_with_ports", 0),
+        core_(core_config(straps)),
         hosts_(host_config()),
         rules_(platform::make_port_checkers()) {
     dut_->clock_hz_i = 1'000'000;
-    dut_->idle_level_i = 0;
-    dut_->output_idle_i = 0;
-    dut_->input_i = 0;
-    dut_->emergency_stop_level_i = 1;
-    dut_->emergency_stop_i = 0;
-    drive_hosts(*dut_, in);
+    dut_->idle_level_i = straps.idle_level;
+    dut_->output_idle_i = straps.output_idle;
+    dut_->emergency_stop_level_i = straps.emergency_stop_level;
+    drive_pins();
     model::CoreModel::Inputs core;
+    core.emergency_stop = emergency_stop;
     for (const bool reset : {true, false}) {
       dut_->rst_i = reset;
       core.rst = reset;
@@ -48,7 +55,7 @@ class CardBehindPorts {
     in.rx = uart.line.next();
     in.spi = spi.next(hosts_.spi().miso);
     uart.take(hosts_.uart().tx);
-    drive_hosts(*dut_, in);
+    drive_pins();
     judge_rules();
     const model::CoreModel::Answer answer = core_.answer();
     core_.clock(core_inputs());
@@ -73,6 +80,23 @@ class CardBehindPorts {
     dut_->rst_i = 0;
   }
 
+  // For a master at the AXI4-Lite port (AxiHostOf), which leaves resets to reset().
+  void run(const model::CardModel::Inputs& inputs, std::uint64_t clocks) {
+    in.axi.awvalid = inputs.awvalid;
+    in.axi.awaddr = inputs.awaddr;
+    in.axi.wvalid = inputs.wvalid;
+    in.axi.wdata = inputs.wdata;
+    in.axi.wstrb = inputs.wstrb;
+    in.axi.bready = inputs.bready;
+    in.axi.arvalid = inputs.arvalid;
+    in.axi.araddr = inputs.araddr;
+    in.axi.rready = inputs.rready;
+    pins = inputs.pins;
+    emergency_stop = inputs.emergency_stop;
+    for (; clocks != 0; --clocks) clock();
+  }
+  const model::Axi4LitePort::Outputs& bus() const { return hosts_.axi(); }
+
   const model::HostPorts& hosts() const { return hosts_; }
   std::uint32_t position(unsigned axis) const { return core_.position(axis); }
   const Checker& check() const { return check_; }
@@ -82,17 +106,28 @@ class CardBehindPorts {
   UartEnd uart;
   SpiMaster spi;
   model::HostPorts::Inputs in;  // of the buses; set by their masters
+  std::uint32_t pins = 0;       // inputs of the card
+  bool emergency_stop;          // level at its pin
 
  private:
-  static model::CardConfig core_config() {
+  static model::CardConfig core_config(const Straps& straps) {
     model::CardConfig config;
     config.axes = kAxes;
     config.ports = 4;
     config.inputs = 8;
     config.engines = model::RegisterFile::kMaxEngines;
+    config.idle_level = straps.idle_level;
+    config.output_idle = straps.output_idle;
+    config.emergency_stop_level = straps.emergency_stop_level;
     return config;
   }
   static model::HostPorts::Config host_config() { return {true, true, true, true, true, kBreakBits}; }
+
+  void drive_pins() {
+    drive_hosts(*dut_, in);
+    dut_->input_i = static_cast<CData>(pins);
+    dut_->emergency_stop_i = emergency_stop;
+  }
 
   model::CoreModel::Inputs core_inputs() {
     const model::PortArbiter::Inner inner = hosts_.inner();
@@ -106,6 +141,8 @@ class CardBehindPorts {
     core.data = inner.access.data;
     core.of_session = inner.access.of_session;
     core.new_session = inner.access.new_session;
+    core.pins = pins;
+    core.emergency_stop = emergency_stop;
     return core;
   }
 
@@ -150,6 +187,7 @@ class CardBehindPorts {
     check_.compare("Wishbone ack, err, stall", wishbone_shown(dut_->wishbone_o), wishbone_shown(hosts_.wishbone()));
     check_.compare("step_o and dir_o", dut_->step_o << kAxes | dut_->dir_o, out.step << kAxes | out.dir);
     check_.compare("irq_o", dut_->irq_o, out.irq);
+    check_.compare("output_o", dut_->output_o, out.output);
     if (hosts_.axi().rvalid) {
       check_.compare("rdata_o", dut_->rdata_o, hosts_.axi().rdata);
       ++more_;

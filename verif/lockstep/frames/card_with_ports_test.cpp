@@ -4,7 +4,10 @@
 
 #include <deque>
 #include <iterator>
+#include <optional>
+#include <vector>
 
+#include "../card/commands.hpp"
 #include "card_behind_ports.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/frame_bus.hpp"
@@ -100,7 +103,39 @@ void lines_over_both() {
   EXPECT_EQ(card.check().comparisons(), card.expected());
 }
 
+void write_over(driver::FrameBus& bus, std::uint32_t address, std::uint32_t data) {
+  driver::Access access = driver::write_of(address, data);
+  EXPECT_EQ(bus.transfer(&access, 1), 1U);
+}
+
+// A piece waits for more words of its session, until a lower ratio makes the queued ticks enough. It begins unless the
+// session has been replaced by then.
+void piece_that_waits(bool replaced) {
+  CardBehindPorts card;
+  UartLink serial(
+      card.uart, {1'000'000, 115'200, 1 << CardBehindPorts::kBreakBits | 20}, [&card] { card.clock(); },
+      [&card] { return card.check().cycles(); });
+  driver::FrameBus writer(serial);
+  driver::FeedCommand piece = test::feed(1000, 2);
+  piece.stop_distance = 20'000;  // far more than are queued
+  std::vector<std::uint32_t> words;
+  driver::encode(piece, 0, words);
+  driver::encode(test::line(1000, {100}), 1, words);
+  for (const std::uint32_t word : words) write_over(writer, card_map::reg::kStream, word);
+  EXPECT_EQ(card.position(0), 0U);
+  write_over(writer, card_map::reg::kSlew, 0x0FFF'FFFF);
+  std::optional<driver::FrameBus> successor;
+  if (replaced) successor.emplace(serial);
+  write_over(replaced ? *successor : writer, card_map::reg::kRatioFeed, 0x800);
+  for (unsigned i = 0; i < 5000; ++i) card.clock();
+  EXPECT_EQ(card.position(0) != 0, !replaced);
+  EXPECT_EQ(card.check().comparisons(), card.expected());
+}
+
 TEST(CardWithPorts, TheDriverMovesItOverSerialLineAndSpi) { EXPECT_EQ(judge(lines_over_both), ""); }
+TEST(CardWithPorts, ASessionThatIsGoneBeginsNothing) {
+  for (const bool replaced : {false, true}) EXPECT_EQ(judge([&] { piece_that_waits(replaced); }), "");
+}
 
 }  // namespace
 }  // namespace trammel::lockstep

@@ -143,6 +143,19 @@ class MotionCoreBench : public MotionCorePair {
     restart();
   }
 
+  // If HEALTH_CAUSES requires the watchdog, the output that shows the card's health follows it.
+  void health_follows_the_watchdog() {
+    restart();
+    write_settings({{reg::kHealthRoles, 1U << card_map::field::kHealthRolesHealthyShift},
+                    {reg::kHealthCauses, card_map::field::kHealthCausesNoWatchdog}});
+    run(10);
+    write_settings({{reg::kWatchdog, 1}});
+    run(10);
+    write_settings({{reg::kWatchdog, 0}});
+    run(10);
+    restart();
+  }
+
   // A HOLD around the start of a fixed piece whose path comes later takes effect at once.
   void holds_before_the_path() {
     for (unsigned clocks = 0; clocks < 90; clocks += 3) {

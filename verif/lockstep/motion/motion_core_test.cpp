@@ -7,7 +7,15 @@
 namespace trammel::lockstep {
 namespace {
 
+// A bench of its own, so that the random programs do not depend on it.
+void health() {
+  MotionCoreBench bench(1);
+  bench.health_follows_the_watchdog();
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+}
+
 void random_programs() {
+  if (kEnables) health();
   MotionCoreBench bench(seed_from_environment(20261115));
   const std::uint64_t length = scaled(1'000'000);
   if (kPathCommands) bench.commands_around_ends();
