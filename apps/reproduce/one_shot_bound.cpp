@@ -62,22 +62,22 @@ void random_lines(Page& page, const Progress& progress) {
     if (i % 20'000 == 0) progress(0.9 * i / kLines);
   }
   page.pass("Bound of the error, (11) to (24)", "below 1 pulse along the shorter axis",
-            fmt::format("{} random lines in all octants, {} positions: {} at 1 pulse or more, the largest {:.4f}",
+            fmt::format("{} random lines in all octants have {} positions. Of these, {} have an error of 1 pulse or "
+                        "more; the largest error is {:.4f}",
                         kLines, bounds.positions, bounds.over, bounds.along),
             bounds.over == 0 && bounds.along > 0.95);
   // sqrt(2) / 2: each axis is at most half a pulse from its ideal position.
-  page.added(
-      "The proof's octant", "(11): y_e - y_s > x_e - x_s > 0 alone",
-      fmt::format(
-          "the lines above lie in all octants, {} of them in that one; the others follow by exchanging x and y and "
-          "by mirroring, and the bound holds there too",
-          bounds.proved),
-      bounds.over == 0 && bounds.proved > kLines / 10 && bounds.proved < kLines / 5);
-  page.added("Bound, perpendicular", "not given",
+  page.added("Octant of the proof", "(11) covers only y_e - y_s > x_e - x_s > 0",
+             fmt::format("{} of the random lines lie in this octant, and the bound holds in all octants. The other "
+                         "octants follow by exchanging x and y and by mirroring",
+                         bounds.proved),
+             bounds.over == 0 && bounds.proved > kLines / 10 && bounds.proved < kLines / 5);
+  page.added("Bound of the perpendicular distance", "not given",
              fmt::format("at most {:.4f} pulses, below sqrt(1/2) = 0.7071", bounds.perpendicular),
              bounds.perpendicular <= std::sqrt(0.5) + 1e-12 && bounds.perpendicular > 0.68);
   page.pass("End of the line", "the error of the end point is zero",
-            fmt::format("{} of {} lines end wrong or late", bounds.wrong_end, kLines), bounds.wrong_end == 0);
+            fmt::format("{} of {} lines end at a wrong point or late", bounds.wrong_end, kLines),
+            bounds.wrong_end == 0);
 }
 
 struct DividerCase {
@@ -100,8 +100,8 @@ void dividers(Page& page) {
   constexpr std::array<DividerCase, 4> kCases{
       {{29999, 10007, 1, 4.10}, {29999, 10007, 3, 7.59}, {30000, 10001, 1, 3.79}, {30000, 10001, 3, 7.59}}};
   Csv csv("dx,dy,v,x,distance_divider,distance_accumulator");
-  std::vector<std::vector<std::string>> rows{
-      {"line", "v", "dividers", "x ends at clock", "y ends at clock", "accumulators"}};
+  std::vector<std::vector<std::string>> rows{{"line", "v", "error with dividers, pulses", "x ends at clock",
+                                              "y ends at clock", "error with accumulators, pulses"}};
   std::vector<chart::Series> series;
   bool equal = true;
   bool apart = true;
@@ -145,14 +145,14 @@ void dividers(Page& page) {
     series.push_back(stray);
   }
   page.table(rows);
-  page.corrected("Pulse generators made of timers", "timers will do, and the error stays below 1 pulse",
-                 "with whole dividers at 50 MHz the lines above stray by 3.79 to 7.59 pulses and the axes end at "
-                 "different times; phase accumulators keep the bound",
-                 equal && apart && exact);
+  page.corrected(
+      "Pulse generators made of timers", "timers suffice, and the error stays below 1 pulse",
+      "with integer dividers at 50 MHz the tested lines deviate by 3.79 to 7.59 pulses, and their axes end at "
+      "different times. Phase accumulators keep the bound",
+      equal && apart && exact);
   chart::Panel panel{"Integer dividers at 50 MHz", {"x, pulses"}, {"distance from the line, pulses"}, series};
   panel.y.low = 0;
-  page.picture("one-shot-dividers",
-               "Distance from the line with integer dividers, the largest in every 250 pulses of x",
+  page.picture("one-shot-dividers", "Distance from the line with integer dividers: the largest in each 250 pulses of x",
                chart::grid_of({panel}, 1, 760, 340), csv);
 }
 

@@ -184,7 +184,8 @@ struct LinesOnCard {
   Csv track{"line,tick,x,y,distance"};
   Csv pins{"line,axis,direction,clock"};
   std::vector<chart::Panel> panels;
-  std::vector<std::vector<std::string>> rows{{"line", "pulses x, y", "card, pulses", "exact arithmetic, pulses"}};
+  std::vector<std::vector<std::string>> rows{
+      {"line", "pulses x, y", "error on the card, pulses", "error in exact arithmetic, pulses"}};
 };
 
 void run_line_of_paper(std::size_t i, LinesOnCard& sums) {
@@ -224,26 +225,27 @@ void judge_lines(Page& page, const LinesOnCard& sums) {
   page.pass("Figure 3 on the card, end points", "the error of the end point is zero",
             fmt::format("{} of 8 lines end exactly, at the pins and in the counters", totals.ends), totals.ends == 8);
   page.pass("Position formula (9), (10) on the card", "x = round(v t / f)",
-            fmt::format("{} of 8 lines at floor(1/2 + k F / 2^40) in each of {} clocks, at most {:g} clock from exact "
-                        "arithmetic",
+            fmt::format("{} of 8 lines are at floor(1/2 + k F / 2^40) in each of {} clocks k, where F is the FREQUENCY "
+                        "of the axis. Each step is within {:g} clock of exact arithmetic",
                         totals.formula, kPaperClocks + 1, totals.lag),
             totals.formula == 8 && totals.lag <= 1);
   page.table(sums.rows);
   page.pass("Error on the card", "below 1 pulse",
-            fmt::format("{} of 8 within sqrt(2) (1/2 + L / 2^41), perpendicular, and {} of 8 errors equal to those of "
-                        "exact arithmetic to three decimals",
+            fmt::format("{} of 8 perpendicular errors are within sqrt(2) (1/2 + L / 2^41), where L is the number of "
+                        "clocks, and {} of 8 equal those of exact arithmetic to three decimals",
                         totals.bound, totals.equal),
             totals.bound == 8 && totals.equal == 8);
   // After reset DIR is forward, and the shaper reverses it before an axis's first backward pulse. This takes a few
   // clocks and is visible only at the pin.
-  page.corrected("Velocities on the card", "both velocities stay the same",
-                 fmt::format("intervals at a pin differ by at most {:g} clock after an axis's first one; the first is "
-                             "up to {:g} clocks shorter on an axis that starts backward, because its first pulse waits "
-                             "for DIR, up to {:g} forward",
-                             totals.interval_difference, totals.backward_first, totals.forward_first),
-                 totals.interval_difference <= 1 && totals.forward_first <= 1 && totals.backward_first <= 8);
+  page.corrected(
+      "Velocities on the card", "both velocities stay the same",
+      fmt::format("after the first interval of an axis, the intervals at its pin differ by at most {:g} clock. The "
+                  "first interval can be shorter: by {:g} clocks on an axis that starts backward, because its first "
+                  "pulse waits for DIR, and by {:g} on an axis that starts forward",
+                  totals.interval_difference, totals.backward_first, totals.forward_first),
+      totals.interval_difference <= 1 && totals.forward_first <= 1 && totals.backward_first <= 8);
   page.pass("Lockstep", "(no simulation of hardware)",
-            fmt::format("{} clocks compared with the golden model, no mismatch", totals.clocks),
+            fmt::format("{} clocks compared with the golden model without a mismatch", totals.clocks),
             totals.clocks > 16'000);
 }
 
@@ -272,23 +274,25 @@ bool refuses_then_runs() {
 }
 
 void figure_two(Page& page, const LinesOnCard& sums) {
-  page.pass("Figure 2 (a)", "a CPU sends frequency and number of pulses to a pulse generator an axis",
+  page.pass("Figure 2 (a)", "a CPU sends the frequency and number of pulses to one pulse generator per axis",
             fmt::format("one transfer of frequencies and counts starts the card's two pulse generators, and {} of 8 "
-                        "lines end exactly; drivers and motors are no part of this run",
+                        "lines end exactly. The run includes no motor drivers and no motors",
                         sums.totals.ends),
             sums.totals.ends == 8);
-  page.pass("Figure 2 (b)", "compare with v_max, enter again if over it; else compute and send",
-            "Line 1 with y over its limit is refused before the first bus access; entered again with half of v it runs "
-            "to its end",
-            refuses_then_runs());
+  page.pass(
+      "Figure 2 (b)",
+      "v is compared with v_max and must be entered again if it is above; otherwise the line is computed and sent",
+      "Line 1 with y above its limit is refused before the first bus access; with half of v it is accepted and runs to "
+      "its end",
+      refuses_then_runs());
 }
 
 void lines_on_card(Page& page, const Progress& progress) {
   page.heading("Lines 1 to 8 on the card");
   page.text(
-      "The Verilated card in lockstep with its golden model, direct mode, 10 MHz, 2,000 clocks a line. Its "
-      "frequencies are rounded to 2^-40 pulses a clock, so where exact arithmetic has a tie, a step comes a "
-      "clock later or at the same time.");
+      "The Verilated card runs in lockstep with its golden model: direct mode, 10 MHz, 2,000 clocks per line. Its "
+      "frequencies are rounded to 2^-40 pulses per clock. If the exact position of an axis lies halfway between two "
+      "pulses at a clock, the step therefore comes at this clock or one clock later.");
   LinesOnCard sums;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
     run_line_of_paper(i, sums);
@@ -296,9 +300,10 @@ void lines_on_card(Page& page, const Progress& progress) {
   }
   judge_lines(page, sums);
   figure_two(page, sums);
-  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them",
+  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card ran them",
                chart::grid_of(sums.panels, 2, kLinePanelWidth, kLinePanelHeight), sums.track);
-  page.data("one-shot-card-pins", "Leading edges at the STEP pins, clocks from each line's first", sums.pins);
+  page.data("one-shot-card-pins", "Leading edges at the STEP pins, in clocks after the first edge of each line",
+            sums.pins);
 }
 
 // Clocks of 100 ns: half of the intervals of x and y on the line of Figure 4, used as step lengths.
@@ -315,19 +320,24 @@ Spread high_times(const std::vector<double>& rising, const std::vector<double>& 
   return high;
 }
 
+// One number if all are equal.
+std::string range_of(const Spread& spread) {
+  if (spread.least == spread.largest) return fmt::format("{:g}", spread.least);
+  return fmt::format("{:g} to {:g}", spread.least, spread.largest);
+}
+
 void judge_duty_ratio(Page& page, const std::array<Spread, 2>& intervals, const std::array<Spread, 2>& high) {
   bool half = true;
   for (std::size_t a = 0; a < 2; ++a) {
     half = half && high[a].least == high[a].largest && 2 * high[a].least == intervals[a].least &&
            intervals[a].least == intervals[a].largest;
   }
-  page.pass("Duty ratio on the card", "kept at 50 %",
-            fmt::format("x is high for {:g} to {:g} of {:g} clocks and y for {:g} to {:g} of {:g}, both edges as seen "
-                        "at the pins, with step lengths set to half of the intervals; the card keeps a step length, "
-                        "not a duty ratio, when the frequency changes",
-                        high[0].least, high[0].largest, intervals[0].largest, high[1].least, high[1].largest,
-                        intervals[1].largest),
-            half);
+  page.pass(
+      "Duty ratio on the card", "kept at 50 %",
+      fmt::format("at the pins, x is high for {} of {} clocks and y for {} of {}, with step lengths set to half of the "
+                  "intervals. When the frequency changes, the card keeps the step length, not the duty ratio",
+                  range_of(high[0]), range_of(intervals[0]), range_of(high[1]), range_of(intervals[1])),
+      half);
 }
 
 void wave_on_card(Page& page) {
@@ -355,8 +365,7 @@ void wave_on_card(Page& page) {
   chart::Panel panel = wave_panel("STEP pins", end);
   for (unsigned a = 0; a < 2; ++a) panel.series.push_back(wave(a, rising[a], falling[a], end));
   page.pass("Figure 4 (a) on the card", "the frequency of both axes stays the same",
-            fmt::format("x pulses {:g} to {:g} clocks apart, y {:g} to {:g}", spread[0].least, spread[0].largest,
-                        spread[1].least, spread[1].largest),
+            fmt::format("the pulses of x are {} clocks apart, those of y {}", range_of(spread[0]), range_of(spread[1])),
             spread[0].least >= 199 && spread[0].largest <= 201 && spread[1].least >= 99 && spread[1].largest <= 101);
   judge_duty_ratio(page, spread, high);
   page.picture("one-shot-figure-4-card", "Both edges of the STEP pins on the line (0,0) to (10,20)",
@@ -379,11 +388,13 @@ void standstill(Page& page) {
         std::equal(straight.begin(), straight.end(), ramped.begin(), ramped.end(), equal) && ends_exactly(line, held);
     longest = std::max(longest, held.line_cycles);
   }
-  page.corrected("Constant velocity from a standstill", "full velocity from the first pulse to the last",
-                 fmt::format("no motor can; the card's time base ramps both axes at once: {} of 8 lines that it stops "
-                             "in the middle and starts again ({} clocks) keep their track tick by tick",
-                             same, longest),
-                 same == 8 && longest > 2 * kPaperClocks);
+  page.corrected(
+      "Constant velocity from a standstill", "full velocity from the first pulse to the last",
+      fmt::format(
+          "no motor can do this. The card's time base ramps both axes together: it stopped each line in the middle and "
+          "restarted it (longest run: {} clocks), and {} of 8 lines kept their path tick by tick",
+          longest, same),
+      same == 8 && longest > 2 * kPaperClocks);
 }
 
 }  // namespace

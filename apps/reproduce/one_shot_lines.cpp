@@ -89,19 +89,21 @@ void figure_three(Page& page) {
     }
     rows.push_back(row);
   }
-  page.pass("Figure 3, end points", "the error of the end point is zero", fmt::format("{} of 8 ends exact", ends),
-            ends == 8);
-  page.pass("Figure 3, error band", "every trajectory between the limits 1 pulse from the line",
-            fmt::format("{} of 8 within, the largest distance {:.3f}", inside, farthest), inside == 8);
+  page.pass("Figure 3, end points", "the error of the end point is zero",
+            fmt::format("{} of 8 lines end exactly", ends), ends == 8);
+  page.pass(
+      "Figure 3, error band", "every trajectory stays between two limits, 1 pulse on either side of the line",
+      fmt::format("{} of 8 trajectories stay between the limits; the largest distance is {:.3f}", inside, farthest),
+      inside == 8);
   page.text(
-      "Largest distance from the line, perpendicular, after all steps of a clock (pulses; 10 MHz, 2,000 clocks "
-      "a line):");
+      "Largest perpendicular distance from the line in pulses, measured after all steps of a clock (10 MHz, 2,000 "
+      "clocks per line):");
   page.table(rows);
   page.pass("Errors of Lines 1 to 8", "below 1 pulse",
             fmt::format("{} of 32 errors equal those of exact arithmetic to three decimals", equal), equal == 32);
   page.pass("STEER on Lines 1 to 8", "(the first paper) one unit step at a time",
-            fmt::format("{} of 8 step counts |dx| + |dy|", steer_steps), steer_steps == 8);
-  page.picture("one-shot-figure-3", "Lines 1 to 8, phase accumulators, with the band of 1 pulse",
+            fmt::format("{} of 8 step counts equal |dx| + |dy|", steer_steps), steer_steps == 8);
+  page.picture("one-shot-figure-3", "Lines 1 to 8 by phase accumulators, with the limits at 1 pulse from the line",
                chart::grid_of(panels, 2, kLinePanelWidth, kLinePanelHeight), csv);
 }
 
@@ -111,8 +113,8 @@ void figure_five(Page& page) {
   const std::uint64_t operations = walk.total_time();
   const driver::OneShotPlan plan = driver::plan_line_clocks(paper_card(), {20, 40}, kPaperClocks);
   page.pass("Figure 5", "60 operations point by point, 1 for one-shot",
-            fmt::format("{} and {} (one plan, one block write of {} words)", operations, plan.size(),
-                        driver::one_shot_words(paper_card().axes)),
+            fmt::format("{} operations point by point, {} for one-shot (one plan, one block write of {} words)",
+                        operations, plan.size(), driver::one_shot_words(paper_card().axes)),
             operations == 60 && plan.size() == 1);
   Csv csv("line,point_by_point,one_shot");
   std::vector<chart::Point> operations_of_line;  // number of operations over the number of earlier pulses
@@ -126,8 +128,9 @@ void figure_five(Page& page) {
       {"point by point", chart::colour(1), operations_of_line, chart::Mark::kDots, 2},
       {"one-shot", chart::colour(0), {{0, 1}}, chart::Mark::kDots, 4}};
   page.picture(
-      "one-shot-figure-5", "Operations for Line 1, a dot each",
-      chart::grid_of({{"Line 1, (0,0) to (20,40)", {"pulses sent before it"}, {"operation"}, series}}, 1, 560, 320),
+      "one-shot-figure-5", "Operations for Line 1, one dot each",
+      chart::grid_of({{"Line 1, (0,0) to (20,40)", {"pulses sent before the operation"}, {"operation"}, series}}, 1,
+                     560, 320),
       csv);
 }
 
@@ -152,13 +155,14 @@ void split_line(Page& page) {
   }
   // A pulse takes 256 clocks here, so a part that ends within half a pulse of its ideal point is early or late by up to
   // half of that.
-  page.pass("A line too long", "is divided into small lines",
-            fmt::format(
-                "2^34 pulses go out in {} lines: their ends lie within {:.2f} pulses of the line and {:.0f} clocks of "
-                "constant velocity, the last one's on the end {} clocks after the 2^42 asked for",
-                plan.size(), stray, late, clocks - duration),
-            plan.size() > 1 && at == line.end && clocks >= duration && clocks - duration < plan.size() &&
-                stray <= std::sqrt(0.5) && late <= 256);
+  page.pass(
+      "Lines that are too long", "a line that is too long is divided into small lines",
+      fmt::format("2^34 pulses are sent as {} lines. Their ends lie within {:.2f} pulses of the ideal line and "
+                  "within {:.0f} clocks of constant velocity. The last line ends at the end point. All lines together "
+                  "last 2^42 clocks, as requested, plus {}",
+                  plan.size(), stray, late, clocks - duration),
+      plan.size() > 1 && at == line.end && clocks >= duration && clocks - duration < plan.size() &&
+          stray <= std::sqrt(0.5) && late <= 256);
 }
 
 void limits(Page& page) {
@@ -173,20 +177,22 @@ void limits(Page& page) {
   }
   limits.policy = driver::LimitPolicy::kSlow;
   const std::uint64_t slowed = driver::plan_line_clocks(paper_card(), {20, 40}, kPaperClocks, limits).clocks();
-  page.pass(
-      "Velocity over v_max", "must be entered again",
-      fmt::format("Line 1 needs 200,000 pulses/s in y: refused at a limit of 100,000, or slowed to {} clocks", slowed),
-      refused && slowed == 2 * kPaperClocks);
+  page.pass("Velocity over v_max", "a velocity above v_max must be entered again",
+            fmt::format("Line 1 needs 200,000 pulses/s in y. With a limit of 100,000 the driver refuses it or, if told "
+                        "so, slows it to {} clocks",
+                        slowed),
+            refused && slowed == 2 * kPaperClocks);
   split_line(page);
   const std::uint64_t slow =
       make_interpolator(Method::kOneShot, kPaperLines[0].line(), {10'000'000, 1, 60}).total_time();
-  page.corrected("v an integer", "v, an integer, in lines a second: a line lasts 1 s at most",
-                 fmt::format("v as a ratio of integers: Line 1 at v = 1/60 lasts {} clocks, one minute", slow),
-                 slow == 600'000'000);
+  page.corrected(
+      "Integer v", "v is an integer in lines per second, so a line lasts at most 1 s",
+      fmt::format("v can be a ratio of integers: Line 1 at v = 1/60 lasts {} clocks, which is one minute", slow),
+      slow == 600'000'000);
 }
 
 void error_meant(Page& page) {
-  page.heading("What the error means");
+  page.heading("Meaning of the error");
   std::vector<std::vector<std::string>> rows{{"line", "along the shorter axis", "perpendicular"}};
   bool smaller = true;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
@@ -198,12 +204,13 @@ void error_meant(Page& page) {
     smaller = smaller && perpendicular <= along && along <= 1;
     rows.push_back({std::to_string(i + 1), fmt::format("{:.3f}", along), fmt::format("{:.3f}", perpendicular)});
   }
+  page.text(
+      "Largest distance of the one-shot method from the line, in pulses. This table gives both distances; all other "
+      "tables give the perpendicular distance.");
   page.table(rows);
-  page.pass(
-      "Error, its meaning", "the distance along one axis is below 1, so the distance from the line is",
-      "true, and weaker than what holds: the perpendicular distance is the smaller one, at most sqrt(1/2); both stand "
-      "in the table, the other tables are perpendicular",
-      smaller);
+  page.pass("Meaning of the error",
+            "the distance along one axis is below 1, so the distance from the line is below 1 too",
+            "true, but a stronger bound holds: the perpendicular distance is smaller, at most sqrt(1/2)", smaller);
 }
 
 // The number of steps of Line 1 in which both axes pulse, and of all its steps.
@@ -221,7 +228,7 @@ void one_pulse_each_time(Page& page) {
   const auto dda = steps_of_both(Method::kDda);
   const auto deviation = steps_of_both(Method::kMinDeviation8);
   page.corrected("One pulse each time", "all three algorithms send one pulse each time",
-                 fmt::format("point by point alone does: on Line 1 digital integration pulses both axes at once in {} "
+                 fmt::format("only point by point does. On Line 1 digital integration pulses both axes at once in {} "
                              "of {} steps, minimum deviation in {} of {}, point by point in {} of {}",
                              dda.first, dda.second, deviation.first, deviation.second, point.first, point.second),
                  point.first == 0 && point.second == 60 && dda.first == 20 && dda.second == 40 &&
@@ -251,15 +258,15 @@ void rival_bounds(Page& page) {
   page.pass("Bound of minimum deviation", "one half of a pulse",
             fmt::format("at most {:.4f} along the shorter axis on 2,000 random lines", rivals[2].largest),
             rivals[2].largest <= 0.5 + 1e-12 && rivals[2].largest > 0.49);
-  page.pass("Bounds of the two others", "one pulse",
-            fmt::format("at most {:.4f} point by point and {:.4f} by digital integration, on the same lines",
+  page.pass("Bounds of the other two methods", "one pulse",
+            fmt::format("at most {:.4f} for point by point and {:.4f} for digital integration, on the same lines",
                         rivals[0].largest, rivals[1].largest),
             rivals[0].largest <= 1 + 1e-12 && rivals[1].largest <= 1 + 1e-12 && rivals[0].largest > 0.95);
   one_pulse_each_time(page);
 }
 
 void rivals(Page& page) {
-  page.heading("The rivals");
+  page.heading("The rival methods");
   const std::vector<Method> methods{Method::kPointByPoint, Method::kMinF4,   Method::kMinDeviation8,
                                     Method::kDda,          Method::kDdaHalf, Method::kOneShot};
   std::vector<std::vector<std::string>> rows{{"line"}};
@@ -276,9 +283,10 @@ void rivals(Page& page) {
     }
     rows.push_back(row);
   }
+  page.text("Largest perpendicular distance from the line, in pulses:");
   page.table(rows);
-  page.pass("Rivals named", "point by point, digital integration, minimum deviation",
-            "each runs here on Lines 1 to 8, ends exact; `trammel compare` has all measures", ends);
+  page.pass("Rival methods", "point by point, digital integration, minimum deviation",
+            "every method tried ends Lines 1 to 8 exactly; `trammel compare` gives all measures", ends);
   rival_bounds(page);
 }
 
@@ -321,20 +329,21 @@ void formulas(Page& page) {
                     std::to_string(kVelocity * p[0]), std::to_string(kVelocity * p[1]), std::to_string(p[0]),
                     std::to_string(p[1]), std::to_string(part.frequency[0]), std::to_string(part.frequency[1])});
   }
-  page.text("FREQUENCY is the driver's, in 2^-40 pulses a clock.");
+  page.text(
+      "The FREQUENCY columns show the register values that the driver computes, in units of 2^-40 pulses per clock.");
   page.table(rows);
-  page.pass("Formulas (5) to (8), Figure 1",
-            "the sum of both velocities is parallel to the line, so every point is on it",
-            fmt::format("{} of 8 lines: the driver's frequencies are v_x and v_y, rounded to 2^-40 pulses a clock, its "
-                        "counts and directions p_x and p_y; the rounding leads at most {:.1e} pulses off the line",
-                        on_line, stray),
-            on_line == 8 && stray < 1e-8);
-  page.corrected(
-      "p_x and p_y", "numbers of pulses: (7), (8), and 0 <= x_t <= p_x",
-      fmt::format("negative for {} of the 8 lines (4, 5 and 7), and x_t starts at x_s: the count is |p_x|, the sign "
-                  "is the direction, and |x_t - x_s| <= |p_x|",
-                  negative),
-      negative == 3);
+  page.pass(
+      "Formulas (5) to (8), Figure 1", "the sum of both velocities is parallel to the line, so every point is on it",
+      fmt::format(
+          "for {} of 8 lines the driver's frequencies are v_x and v_y, rounded to 2^-40 pulses per clock, and its "
+          "counts and directions are p_x and p_y. The rounding moves the end point at most {:.1e} pulses off the line",
+          on_line, stray),
+      on_line == 8 && stray < 1e-8);
+  page.corrected("p_x and p_y", "both are numbers of pulses (7), (8), and 0 <= x_t <= p_x",
+                 fmt::format("p_x is negative for {} of the 8 lines (4, 5 and 7), and x_t starts at x_s. The count is "
+                             "therefore |p_x|, the sign gives the direction, and |x_t - x_s| <= |p_x|",
+                             negative),
+                 negative == 3);
 }
 
 void unit_of_v(Page& page) {
@@ -345,9 +354,9 @@ void unit_of_v(Page& page) {
   // The y axis of Line 1: 40 pulses.
   const Spread interval = spread_of(pulse_times(track_of(Method::kOneShot, kPaperLines[0].line()), 1, 1));
   const double rate = static_cast<double>(kClock) / interval.largest;
-  page.corrected("Unit of v", "v in pulses a second",
-                 fmt::format("at v = 5000 {} of 8 lines, 32 to 53 pulses long, last {} clocks, 1/5000 s, and y of "
-                             "Line 1 makes {:g} pulses a second: v is in lines a second",
+  page.corrected("Unit of v", "v is in pulses per second",
+                 fmt::format("v is in lines per second. At v = 5000, {} of 8 lines, although 32 to 53 pulses long, "
+                             "last {} clocks (1/5000 s), and y of Line 1 makes {:g} pulses per second",
                              equal, kPaperClocks, rate),
                  equal == 8 && interval.least == interval.largest && rate == 200'000);
 }

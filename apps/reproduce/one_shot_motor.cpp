@@ -81,7 +81,8 @@ void write_speeds(Page& page, const Comparison& found) {
     rows.push_back({fmt::format("{:g}", found.speeds[s]), cell_of(found, 0, s), cell_of(found, 1, s)});
   }
   page.table(rows);
-  page.picture("one-shot-motor", "Rms speed ripple over speed, a cross at the foot where steps are lost",
+  page.picture("one-shot-motor",
+               "Rms speed ripple over speed; a cross at the bottom marks a speed at which steps are lost",
                chart::grid_of({ripple_panel(found)}, 1, 760, 420), csv);
 }
 
@@ -96,10 +97,9 @@ void one_shot_motor(Page& page, const Progress& progress) {
   Comparison found{measure::sweep_speeds(), {}};
   found.sweeps = measure::sweep_motors(traces, curve, {}, found.speeds, 1, progress);
   page.text(
-      "Rms speed ripple of a NEMA 17 motor an axis, full steps, line (0,0) to (29,17), speeds reached and left on "
-      "ramps "
-      "of 50 ms, so that a loss is not that of an abrupt start or stop; definitions and all methods in "
-      "[trammel compare](../user/compare.md).");
+      "Rms speed ripple of one NEMA 17 motor per axis: full steps, line (0,0) to (29,17). The motors reach and leave "
+      "each speed on ramps of 50 ms, so an abrupt start or stop is never the cause of lost steps. See [trammel "
+      "compare](../user/compare.md) for definitions and all methods.");
   write_speeds(page, found);
   unsigned better = 0;  // among the speeds from 800 pulses/s on
   unsigned worse_below = 0;
@@ -120,14 +120,14 @@ void one_shot_motor(Page& page, const Progress& progress) {
     }
   }
   page.corrected("Motor vibrates less", "argued from the waveforms, at any speed",
-                 fmt::format("for this motor and load, the only ones tried: at {} of {} speeds from 800 pulses/s on "
-                             "that either method survives; "
-                             "below, near the resonance, point by point is as good or better at {} of {}",
+                 fmt::format("for this motor and load (no others were tried), one-shot is better at {} of {} speeds "
+                             "from 800 pulses/s on, not counting speeds at which both methods lose steps. At lower "
+                             "speeds, near the resonance, point by point is as good or better at {} of {}",
                              better, above, worse_below, below),
                  better == above && worse_below > 0);
   page.pass("Motor loses steps more easily",
-            "pulse by pulse the motor starts and stops irregularly, and is easy to lose steps",
-            fmt::format("steps lost at {} of {} speeds point by point, at {} one-shot", lost[0], found.speeds.size(),
+            "pulse by pulse the motor starts and stops irregularly, and easily loses steps",
+            fmt::format("point by point loses steps at {} of {} speeds, one-shot at {}", lost[0], found.speeds.size(),
                         lost[1]),
             lost[0] > lost[1]);
 }

@@ -92,24 +92,25 @@ void one_shot_waves(Page& page, const Progress& progress) {
   const Spread y = spread_of(pulse_times(one_shot, 1, 1));
   const Spread other = spread_of(pulse_times(by_point, 1, kPeriod));
   page.pass("Figure 4 (a)", "the frequency of both axes stays the same",
-            fmt::format("x pulses every {:g} clocks, y every {:g}", x.largest, y.largest),
+            fmt::format("x makes a pulse every {:g} clocks, y every {:g}", x.largest, y.largest),
             x.least == 200 && x.largest == 200 && y.least == 100 && y.largest == 100);
   page.pass("Figure 4 (b)", "the frequency of y changes",
-            fmt::format("y pulses {:g} to {:g} clocks apart", other.least, other.largest), other.largest > other.least);
+            fmt::format("the pulses of y are {:g} to {:g} clocks apart", other.least, other.largest),
+            other.largest > other.least);
   page.pass("Figure 4, time", "one-shot takes less time at equal velocity",
-            fmt::format("{} clocks against {:g}", kPaperClocks, end), end == 3000);
+            fmt::format("{} clocks for one-shot, {:g} for point by point", kPaperClocks, end), end == 3000);
   page.picture(
       "one-shot-figure-4",
-      "Pulses over clocks at 10 MHz, v = 5000: (a) with the paper's duty ratio of 50 %, (b) the moments alone, "
-      "because the method gives no width",
+      "Pulses over clocks at 10 MHz, v = 5000: (a) with the paper's duty ratio of 50 %; (b) only the times of the "
+      "pulses, because the method does not define their length",
       chart::grid_of(panels, 1, 900, 190), csv);
   progress(0.5);
   const Unevenness even = unevenness(Method::kOneShot);
   const Unevenness uneven = unevenness(Method::kPointByPoint);
   page.corrected(
       "Velocities unchanged", "both velocities stay the same during the line",
-      fmt::format("to within {:g} clock, where f / (v p) is no whole number: over Lines 1 to 8 the intervals "
-                  "of an axis differ by at most {:.1f} % of their mean, by {:.0f} % point by point",
+      fmt::format("only to within {:g} clock if f / (v p) is not a whole number. Over Lines 1 to 8 the intervals "
+                  "of an axis differ by at most {:.1f} % of their mean; point by point they differ by up to {:.0f} %",
                   even.units, 100 * even.relative, 100 * uneven.relative),
       even.units == 1 && even.relative < uneven.relative);
 }

@@ -54,12 +54,12 @@ std::string cell(std::string text) {
 
 std::string entry_page(const std::vector<Page>& pages) {
   std::string text =
-      "# Both papers, made again\n\n" +
+      "# Both papers, reproduced\n\n" +
       reproduce::wrapped(
-          "The tables, figures and claims of the two papers behind this project, made again by `trammel reproduce`, "
-          "which wrote these pages. PASS: as the paper has it. CORRECTED: the paper is wrong there, and what is right "
-          "was found. ADDED: the paper is silent there, and what it leaves open was found. OPEN: a claim that is not "
-          "tested here, with the reason. FAIL: none of these; the command then ends with status 1.") +
+          "`trammel reproduce` computed the tables, figures and claims of the two papers behind this project and wrote "
+          "these pages. PASS: the result equals the paper. CORRECTED: the paper is wrong; the correct result is given. "
+          "ADDED: the paper does not say; the result is given. OPEN: not tested, with the reason. FAIL: none of these; "
+          "the command then ends with status 1.") +
       "\n";
   for (const Page& page : pages) {
     text += fmt::format(
@@ -141,7 +141,7 @@ void reproduce_papers(const ReproduceOptions& options) {
 void add_reproduce_command(CLI::App& app) {
   auto options = std::make_shared<ReproduceOptions>();
   CLI::App* command =
-      app.add_subcommand("reproduce", "compute every table and figure of both papers again, with a verdict on each");
+      app.add_subcommand("reproduce", "reproduce every table and figure of both papers, with a verdict on each");
   command->add_option("--out", options->out, "folder for the pages, pictures and data")
       ->capture_default_str()
       ->type_name("DIR");

@@ -30,9 +30,10 @@ void figure_one(Page& page) {
   }
   const Point quarter{static_cast<std::int64_t>(path.points.back()[0]),
                       static_cast<std::int64_t>(path.points.back()[1])};
-  page.pass("Figure 1", "a ragged path of x and y steps along the circle",
-            fmt::format("a quarter of radius 50 takes 100 unit steps, to ({},{})", quarter.x, quarter.y),
-            unit_steps && quarter == Point{0, 50});
+  page.pass(
+      "Figure 1", "a ragged path of x and y steps along the circle",
+      fmt::format("a quarter of a circle of radius 50 takes 100 unit steps and ends at ({},{})", quarter.x, quarter.y),
+      unit_steps && quarter == Point{0, 50});
   page.picture("steer-figure-1", "A quarter of the circle, radius 50",
                chart::grid_of({plane("Radius 50", {ideal_series("circle", circle_points(50, 90)), path})}, 1, 480, 480),
                csv);
@@ -71,15 +72,16 @@ void full_circles(Page& page, const Progress& progress) {
     }
     if (r % 40 == 0) progress(static_cast<double>(r) / 800);
   }
-  page.pass("Full circles", "circles until it is back at its start",
-            fmt::format("{} of {} (radius 2 to 399, both directions) take exactly 8 r steps", exact, tried),
-            exact == tried && tried == 796);
+  page.pass(
+      "Full circles", "STEER keeps circling until it is back at its start",
+      fmt::format("{} of {} circles (radius r from 2 to 399, both directions) take exactly 8 r steps", exact, tried),
+      exact == tried && tried == 796);
   page.pass("Full circles, radius error", "the path follows the circle",
-            fmt::format("from {:.3f} to {:+.3f} pulses, |error| at most 1", least, largest),
+            fmt::format("the error is between {:.3f} and {:+.3f} pulses, so |error| is at most 1", least, largest),
             least >= -1 && largest < 1 && largest > 0.9);
   page.pass("Raggedness", "greatly decreased in large-diameter circles",
-            fmt::format("largest error {:.2f} % of the radius at 25 pulses, {:.2f} % at 399", 100 * relative_small,
-                        100 * relative_large),
+            fmt::format("the largest error is {:.2f} % of a radius of 25 pulses and {:.2f} % of a radius of 399",
+                        100 * relative_small, 100 * relative_large),
             relative_large * 10 < relative_small);
   page.data("steer-full-circles", "Steps and errors of every circle", csv);
 }
@@ -94,8 +96,8 @@ void large_circle(Page& page) {
     ++steps;
   } while (!walk.back() && steps < 20'000);
   page.pass("Radius 1000", "with a radius of 1000 steps a circle appears smooth to the naked eye",
-            fmt::format("{} steps, off the circle by at most {:.3f} pulses, {:.3f} % of the radius", steps, largest,
-                        largest / 10),
+            fmt::format("the {} steps are at most {:.3f} pulses off the circle, which is {:.3f} % of the radius", steps,
+                        largest, largest / 10),
             walk.back() && steps == 8000 && largest <= 1);
 }
 
@@ -118,8 +120,8 @@ void tangent(Page& page) {
   }
   page.corrected(
       "Motion perpendicular to the radius", "the motion is always perpendicular to the radius",
-      fmt::format("of {} unit steps round a circle of radius {} {} are; they are {:.0f} degrees off on average, "
-                  "{:.0f} at most: steps alternate about the tangent, which their sum follows",
+      fmt::format("of {} unit steps round a circle of radius {}, {} are perpendicular. The average deviation is {:.0f} "
+                  "degrees, the largest {:.0f}: steps alternate about the tangent, and their sum follows it",
                   8 * kRadius, kRadius, perpendicular, across / (8.0 * kRadius), largest),
       perpendicular < 10 && largest > 80 && walk.back());
 }
@@ -147,15 +149,19 @@ void smallest_circles(Page& page) {
     }
   }
   page.corrected(
-      "Radius 1", "circles until it is back at its start",
-      fmt::format("from {} it never is: STEER hangs; the other {} of 8 walks are back after 6 steps; {} of 8 pass "
-                  "the centre, where Table 2 has no direction. Refused here",
-                  hanging, back, through_centre),
+      "Radius 1", "STEER keeps circling until it is back at its start",
+      fmt::format(
+          "from {} STEER never returns: it hangs. The other {} of 8 walks return after 6 steps. {} of 8 walks pass "
+          "through the centre, where Table 2 has no direction. Trammel refuses this radius",
+          hanging, back, through_centre),
       hanging == "(1,0) with D = 0 and (0,1) with D = 1" && back == 6 && through_centre == 8);
   const auto zero = SteerProgram({0, 0}, 0, false).steps_to_return();
-  page.added("Radius 0", "no word on it",
-             fmt::format("a 2x2 square of points in {} steps instead of none; refused here", zero.value_or(0)),
-             zero == 4U);
+  page.added(
+      "Radius 0", "not mentioned",
+      fmt::format(
+          "STEER walks round a 2x2 square of points in {} steps instead of not moving. Trammel refuses this radius",
+          zero.value_or(0)),
+      zero == 4U);
 }
 
 void starts_off(Page& page) {
@@ -175,11 +181,13 @@ void starts_off(Page& page) {
   }
   // The fraction depends on the distribution of the starts. That of the earlier count is not stated, so the check only
   // requires "nearly all".
-  page.added("Start off the circle", "no word on it; the program takes any",
-             fmt::format("{} of 2,000 random starts never return (1,974 of 2,000 in an earlier count with other "
-                         "starts): STEER hangs; a radius that does not fit the start cannot be given here",
-                         never),
-             never > 1900 && never < 2000);
+  page.added(
+      "Start off the circle", "not mentioned; the program accepts any start",
+      fmt::format(
+          "from {} of 2,000 random starts STEER never returns and hangs (1,974 of 2,000 in an earlier count with "
+          "other starts). Trammel takes the radius from the start, so every start is on its circle",
+          never),
+      never > 1900 && never < 2000);
   page.data("steer-starts-off", "The starts that do return", csv);
 }
 
@@ -201,6 +209,9 @@ bool meets(const Point& start, const Point& end, bool clockwise) {
 
 void arcs(Page& page, const Progress& progress) {
   page.heading("Arcs");
+  page.text(
+      "The exact-end rule: in the last quadrant, as soon as one coordinate reaches or passes that of the end point, "
+      "the walk goes straight to the end point.");
   constexpr int kArcs = 20000;
   std::mt19937_64 random(2);
   int missed_four = 0;
@@ -228,13 +239,15 @@ void arcs(Page& page, const Progress& progress) {
   // The fractions depend on the distribution of the arcs and on the 8-direction rule; those of the other count are not
   // stated. So the check only requires that a considerable part of the ends is missed without the exact-end rule, and
   // none with it.
-  page.added("Arcs", "full circles only",
-             fmt::format("of {} random arcs with a correctly rounded end (radius 10 to 300), a walk by the rule "
-                         "alone misses {:.1f} % in 4 directions (sign of F) and {:.1f} % in 8 (minimum deviation); "
-                         "an earlier count with other arcs had 13.6 % and 12.4 %; with the exact-end rule {} are "
-                         "missed",
-                         kArcs, four, eight, missed_here),
-             four > 5 && eight > 5 && missed_here == 0);
+  page.added(
+      "Arcs", "full circles only",
+      fmt::format(
+          "each of {} random arcs (radius 10 to 300) has a correctly rounded end point. Without the exact-end rule, "
+          "walks in 4 directions (sign of F) miss {:.1f} % of the end points, and walks in 8 directions "
+          "(minimum deviation) miss {:.1f} %; an earlier count with other arcs had 13.6 % and 12.4 %. "
+          "With the exact-end rule, walks miss {} end points",
+          kArcs, four, eight, missed_here),
+      four > 5 && eight > 5 && missed_here == 0);
 }
 
 // The distance of a point from the ellipse x^2 / a^2 + y^2 / b^2 = 1, a > b > 0. The nearest point of the ellipse is
@@ -274,12 +287,11 @@ void ellipse(Page& page) {
     ends = ends && walk.position() == Position{60, 0, 0, 0};
     series.push_back(path);
   }
-  page.pass(
-      "Extension to the ellipse", "named as possible, not given",
-      fmt::format("semi-axes 60 and 25, back at (60,0): STEER's own rule in 4 directions within {:.3f} pulses of the "
-                  "ellipse, 8 directions within {:.3f}",
-                  largest[0], largest[1]),
-      ends && largest[0] > 0.9 && largest[0] <= 1 && largest[1] > 0.45 && largest[1] < 0.5);
+  page.pass("Extension to the ellipse", "mentioned as possible, but not described",
+            fmt::format("with semi-axes 60 and 25, walks in 4 and 8 directions return to (60,0). STEER's own rule in 4 "
+                        "directions stays within {:.3f} pulses of the ellipse, the rule in 8 directions within {:.3f}",
+                        largest[0], largest[1]),
+            ends && largest[0] > 0.9 && largest[0] <= 1 && largest[1] > 0.45 && largest[1] < 0.5);
   page.picture("steer-ellipse", "An ellipse in 4 and in 8 directions",
                chart::grid_of({plane("Semi-axes 60 and 25", series)}, 1, 680, 380), csv);
 }
@@ -301,7 +313,7 @@ double parametric_error(std::int64_t radius, int bits) {
 }
 
 void parametric(Page& page) {
-  page.heading("The parametric rival");
+  page.heading("The rival method: parametric functions");
   Csv csv("fraction_bits,largest_error");
   std::vector<std::vector<std::string>> rows{{"fraction bits of sine and cosine", "largest error, pulses"}};
   for (int bits = 6; bits <= 16; bits += 2) {
@@ -309,15 +321,15 @@ void parametric(Page& page) {
     csv.row("{},{:.3f}", bits, error);
     rows.push_back({std::to_string(bits), fmt::format("{:.2f}", error)});
   }
-  page.text("Radius 1000, a point for each of STEER's 8,000 steps, sine and cosine rounded:");
+  page.text("Radius 1000, one point for each of STEER's 8,000 steps, computed from rounded sine and cosine:");
   page.table(rows);
   page.pass("Parametric functions, precision", "sine and cosine need a high degree of numeric precision",
-            "at radius 1000 with 8 fraction bits they stray by more than STEER's 1 pulse, with 12 they do not",
+            "at radius 1000 the error with 8 fraction bits is above STEER's 1 pulse; with 12 it is below",
             parametric_error(1000, 8) > 1 && parametric_error(1000, 12) < 1);
   page.open(
       "Parametric functions, time", "sine and cosine can be too time-consuming for a real-time application",
-      "the paper names neither a processor nor a time, and its listing has four products a step itself: x2 x2, y2 "
-      "y2, 2 x2 and 2 y2");
+      "the paper names neither a processor nor a time. Its own listing computes four products per step: x2 x2, y2 y2, "
+      "2 x2 and 2 y2");
   page.data("steer-parametric", "Errors by fraction bits", csv);
 }
 

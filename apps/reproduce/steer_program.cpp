@@ -41,10 +41,11 @@ void delay_list(Page& page) {
     csv.row("{},{},{}", step, drag, taken);
     passes.points.push_back({static_cast<double>(step), static_cast<double>(taken)});
   }
-  page.pass("Delay list", "(feedrate + drag) / 30 passes, drag from 100 down",
-            fmt::format("drag {}", fmt::join(drags, " ")), drags == expected);
+  page.pass("Delay list", "(feedrate + drag) / 30 passes of a loop; drag falls from 100",
+            fmt::format("drag is {}", fmt::join(drags, " ")), drags == expected);
   page.corrected("Delay list, its shape", "falls off exponentially (comment)",
-                 "falls by 1, 0, 1, 4, 9, 16, 25, 36: the squares of a count, a cubic", drags == expected);
+                 "it falls by 1, 0, 1, 4, 9, 16, 25, 36. These are squares, so their sum is a cubic",
+                 drags == expected);
   chart::Panel panel{"Delay before each step", {"step of the line"}, {"passes of the loop"}, {passes}};
   panel.y.low = 0;
   panel.y.high = 15;
@@ -52,24 +53,23 @@ void delay_list(Page& page) {
                chart::grid_of({panel}, 1, 520, 280), csv);
   const std::int32_t slow = SteerDelay(600).delay().value_or(0);
   const std::int32_t fast = SteerDelay(300).delay().value_or(0);
-  page.corrected("Feedrate", "the speed; about steps a minute",
-                 fmt::format("a larger number is a longer delay: {} passes at 600, {} at 300", slow, fast),
+  page.corrected("Feedrate", "the speed, about steps per minute",
+                 fmt::format("a larger number makes the delay longer: {} passes at 600, {} at 300", slow, fast),
                  slow > fast);
   page.added(
-      "Feedrate + drag below 30", "no word on it",
-      fmt::format("the listing's loop, run with the 16-bit int of its compiler: {} passes at 29, where 0 are meant, {} "
-                  "at 30",
+      "Feedrate + drag below 30", "not mentioned",
+      fmt::format("with the 16-bit int of its compiler, the listing's loop makes {} passes at 29, where 0 are "
+                  "intended, and {} at 30",
                   loop_passes(29), loop_passes(30)),
       loop_passes(29) == 65'536 && loop_passes(30) == 1 && !SteerDelay(29).delay() && SteerDelay(30).delay() == 1);
   SteerDelay circle(300);
   const std::int32_t first = circle.delay().value_or(0);
   const std::int32_t second = circle.delay().value_or(0);
-  page.added(
-      "Ramp of a circle", "a ramp is useful where inertia matters; said of the line",
-      fmt::format("the line routine alone arms it, and the program runs one command: a circle begins at full speed, {} "
-                  "and {} passes before its first steps at 300",
-                  first, second),
-      first == 10 && second == 10);
+  page.added("Ramp of a circle", "a ramp is useful where inertia matters (mentioned only for lines)",
+             fmt::format("only the line routine starts the ramp, and the program runs one command. A circle therefore "
+                         "begins at full speed: {} and {} passes before its first two steps at feedrate 300",
+                         first, second),
+             first == 10 && second == 10);
 }
 
 // Whether Table 2 reaches the end of a line, with F = -dy x + dx y and the gradient (-dy, dx), clockwise: the walk
@@ -109,8 +109,8 @@ void zero_gradient(Page& page) {
   page.added(
       "Lines by Table 2", "the table is given for circles",
       fmt::format(
-          "zero counts as positive in it, so of the 4 lines along an axis, walked by the signs of their gradient, "
-          "{} meet their end; with direction bits from the displacement, as the line routine has them, {} do",
+          "zero counts as positive in the table. Of the 4 lines along an axis, {} reach their end if the signs of the "
+          "gradient choose the direction, and {} if the signs of the displacement do, as in the line routine",
           by_table, by_line_routine),
       by_table < 4 && by_line_routine == 4);
   page.data("steer-zero-gradient", "The four lines", csv);

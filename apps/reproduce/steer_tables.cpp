@@ -36,10 +36,11 @@ void table_one(Page& page) {
             in_x ? step.direction[0] : step.direction[1], walk.position()[0], walk.position()[1]);
     path.points.push_back({static_cast<double>(walk.position()[0]), static_cast<double>(walk.position()[1])});
   }
-  page.pass("Table 1", "10 rows of F, x2, y2 and the step", fmt::format("{} of 10 rows equal, end at (3,-7)", equal),
+  page.pass("Table 1", "10 rows of F, x2, y2 and the step",
+            fmt::format("{} of 10 rows equal; the line ends at (3,-7)", equal),
             equal == 10 && walk.time() == 10 && walk.position() == line.end);
   page.corrected("Line, step rule in the text", "y steps when F becomes negative",
-                 "y steps at F = 0 too (row 8 of Table 1, and the listing's F > 0)", zero_steps_y);
+                 "y also steps at F = 0 (row 8 of Table 1; the listing tests F > 0)", zero_steps_y);
   page.picture("steer-table-1", "Table 1 as a path",
                chart::grid_of({plane("(0,0) to (3,-7)", {ideal_series("line", {{0, 0}, {3, -7}}), path})}, 1, 320, 420),
                csv);
@@ -86,14 +87,17 @@ void table_two(Page& page) {
             turn > 0 ? "counter-clockwise" : "clockwise", outward ? "outward" : "inward");
   }
   page.pass("Table 2", "16 steps by D, F, DX, DY", fmt::format("{} of 16 entries equal", equal), equal == 16);
-  page.pass("Table 2, its sense", "the sign of F and the quadrant choose the correction",
-            fmt::format("{} of 16 steps go along the curve in one sense, inward for F >= 0, outward for F < 0", sound),
-            sound == 16);
-  page.corrected("Direction", "0 = clockwise, 1 = counter-clockwise (text)",
-                 fmt::format("with x right and y up {} of the 8 entries for D = 0 turn counter-clockwise",
+  page.pass(
+      "Table 2, corrections", "the sign of F and the quadrant choose the correction",
+      fmt::format(
+          "{} of 16 steps go round the centre in the direction that D selects, inward for F >= 0 and outward for F < 0",
+          sound),
+      sound == 16);
+  page.corrected("Direction D", "0 = clockwise, 1 = counter-clockwise (text)",
+                 fmt::format("with x to the right and y up, {} of the 8 entries for D = 0 turn counter-clockwise",
                              counter_clockwise_at_zero),
                  counter_clockwise_at_zero == 8);
-  page.data("steer-table-2", "The entries", csv);
+  page.data("steer-table-2", "All entries", csv);
 }
 
 // As printed.
@@ -142,13 +146,14 @@ void table_three(Page& page) {
   path.points.push_back(path.points.front());
   page.pass("Table 3, rows 0 to 24", "25 rows of 12 columns, x2 to yo", fmt::format("{} of 300 numbers equal", equal),
             equal == 300);
-  page.corrected("Table 3, last row", "x = 13 with y = 18, F = 23, DX = 36",
-                 fmt::format("x = {}: F = 23 and DX = 36 fit ({},{}) only; the row's other 11 columns are right",
-                             last.x, last.x, last.y),
-                 differ == "x2" && last == Point{18, 18});
-  page.pass("Table 3, the full turn", "back at (25,0)", fmt::format("back after {} steps", steps), steps == 200);
+  page.corrected(
+      "Table 3, last row", "x = 13 with y = 18, F = 23, DX = 36",
+      fmt::format("x = {}, because F = 23 and DX = 36 fit only ({},{}); the other 11 columns of the row are correct",
+                  last.x, last.x, last.y),
+      differ == "x2" && last == Point{18, 18});
+  page.pass("Table 3, full circle", "returns to (25,0)", fmt::format("returns after {} steps", steps), steps == 200);
   page.picture(
-      "steer-table-3", "The full circle that Table 3 begins",
+      "steer-table-3", "The full circle; Table 3 lists only its beginning",
       chart::grid_of({plane("Radius 25, D = 0", {ideal_series("circle", circle_points(25, 360)), path})}, 1, 480, 500),
       csv);
 }

@@ -42,16 +42,17 @@ GcodeText read_gcode(const std::string& text) {
 void notation(Page& page) {
   const GcodeText paper = read_gcode("G21 G90 F100\nG01 (0,0,10,20) 100\n");
   const GcodeText words = read_gcode("G21 G90\nG01 X10 Y20 F100\n");
-  page.corrected("EIA notation", "G01 (X1, Y1, X3, Y3) f is what the EIA recommends",
-                 "it is the program's own: RS274/NGC, as the host reads it, has a letter before each number and no "
-                 "starting point, and refuses the paper's line; G01 X10 Y20 F100 is one line to (10,20)",
-                 paper.refused && !words.refused && words.lines == 1 && words.end[0] == 10 && words.end[1] == 20);
+  page.corrected(
+      "EIA notation", "G01 (X1, Y1, X3, Y3) f is what the EIA recommends",
+      "the notation is the program's own. RS274/NGC, which the host reads, has a letter before each number and no "
+      "starting point. The host refuses the paper's line, and reads G01 X10 Y20 F100 as one line to (10,20)",
+      paper.refused && !words.refused && words.lines == 1 && words.end[0] == 10 && words.end[1] == 20);
   const GcodeText line = read_gcode("G21 G90\nG1 X10 Y20 F100\n");
   const GcodeText clockwise = read_gcode("G21 G90\nG2 X10 Y0 I5 J0 F100\n");
   const GcodeText unknown = read_gcode("G21 G90\nG99.5 X10 Y0 I5 J0 F100\n");
   page.corrected("Listing, lines 36 and 37", "G01 is a line, every other code a circle",
-                 "by those two lines G02, G00 and any misprint draw the circle of G03, the direction being a number "
-                 "of its own; the host's reader takes G1 as a line, G2 as an arc and refuses a code it does not know",
+                 "these two lines draw the circle of G03 for G02, G00 and any misprint, because the direction is a "
+                 "separate number. The host reads G1 as a line and G2 as an arc, and refuses an unknown code",
                  line.lines == 1 && line.arcs == 0 && clockwise.arcs == 1 && clockwise.lines == 0 && unknown.refused &&
                      unknown.lines + unknown.arcs == 0);
 }
@@ -72,9 +73,10 @@ void average_velocity(Page& page) {
     const std::uint64_t clocks = driver::plan_line(paper_card(), p, driver::PathSpeed{kSpeed, 1}).clocks();
     off = std::max(off, std::fabs(static_cast<double>(clocks) - length * 10'000'000 / kSpeed));
   }
-  page.pass("Average velocity", "that of point by point is hard to control (conclusion)",
-            fmt::format("at one step rate it depends on the direction, {:.3f} to {:.3f} pulses a step over Lines 1 to "
-                        "8; one-shot lines planned for a speed along the path keep it to within one clock a line",
+  page.pass("Average velocity", "the average velocity of point by point is hard to control (conclusion)",
+            fmt::format("at a constant step rate the velocity depends on the direction: {:.3f} to {:.3f} pulses per "
+                        "step over Lines 1 to 8. One-shot lines planned for a speed along the path last as long as "
+                        "this speed requires, to within one clock per line",
                         least, largest),
             least < 0.72 && largest == 1 && off < 1);
 }
@@ -100,26 +102,27 @@ void no_errors(Page& page) {
       periods += kPaperClocks % pulses != 0;
     }
   }
-  page.corrected("No errors in the calculation", "v_x, v_y, p_x and p_y are integers, so there are none",
-                 fmt::format("true of the products alone: of the {} moving axes of Lines 1 to 8, {} have a frequency "
-                             "that the card rounds to 2^-40 pulses a clock, and for {} the period f / v is no whole "
-                             "number of clocks, which a timer needs",
-                             axes, frequencies, periods),
-                 axes == 15 && frequencies == 15 && periods > 0 && rounded);
+  page.corrected(
+      "No errors in the calculation", "v_x, v_y, p_x and p_y are integers, so there are no errors",
+      fmt::format("true only of these products. Of the {} moving axes of Lines 1 to 8, {} have a frequency "
+                  "that the card rounds to 2^-40 pulses per clock. For {} axes the period f / v is not a whole "
+                  "number of clocks, which a timer needs",
+                  axes, frequencies, periods),
+      axes == 15 && frequencies == 15 && periods > 0 && rounded);
 }
 
 void references(Page& page) {
   page.open("Method in polar coordinates [9]", "its error is high and its operation complex",
-            "the paper gives neither its rule nor a figure");
+            "the paper gives neither the rule of this method nor a figure");
   const Line line = kPaperLines[0].line();
   const Track four = track_of(Method::kPointByPoint, line);
   const Track eight = track_of(Method::kMinDeviation8, line);
-  page.pass(
-      "Method in 8 directions [10]", "high precision and speed, against point by point in 4",
-      fmt::format("the rule of [10] is not given; the smallest deviation in 8 directions takes {} steps on Line 1 "
-                  "and strays by {:.3f} pulses, point by point {} and {:.3f}",
-                  eight.size() - 1, largest_distance(line, eight), four.size() - 1, largest_distance(line, four)),
-      eight.size() < four.size() && largest_distance(line, eight) < largest_distance(line, four));
+  page.pass("Method in 8 directions [10]", "high precision and speed, compared with point by point in 4 directions",
+            fmt::format(
+                "the paper does not give the rule of [10]. On Line 1 minimum deviation in 8 directions takes {} steps "
+                "with an error of {:.3f} pulses, point by point {} steps with {:.3f} pulses",
+                eight.size() - 1, largest_distance(line, eight), four.size() - 1, largest_distance(line, four)),
+            eight.size() < four.size() && largest_distance(line, eight) < largest_distance(line, four));
 }
 
 // (13) to (20) at every clock of Line 1, in pulses: round() compared with the exact displacements. (15) and (16) are
@@ -147,8 +150,8 @@ void numbering(Page& page) {
   }
   page.corrected(
       "Numbers of formulas", "(13) and (14) give (13) and (14), which give (17) and (18); -1 < x_i - x_i < 1",
-      fmt::format("(13) and (14) give (15) and (16), which give (17) and (18), and the last is x_t - x_t': so "
-                  "read, (13) to (24) hold in {} of {} clocks of Line 1",
+      fmt::format("(13) and (14) give (15) and (16), which give (17) and (18), and the last difference is x_t - x_t'. "
+                  "With these corrections, (13) to (24) hold in {} of {} clocks of Line 1",
                   hold, kPaperClocks + 1),
       hold == kPaperClocks + 1);
 }
@@ -157,25 +160,26 @@ void coarse_stage(Page& page) {
   const GcodeText cubic = read_gcode("G21 G90 F100\nG5 X30 Y0 I10 J10 P-10 Q10\n");
   const GcodeText quadratic = read_gcode("G21 G90 F100\nG5.1 X30 Y0 I15 J15\n");
   const GcodeText arc = read_gcode("G21 G90 F100\nG3 X-20 Y0 I-10 J0\n");
-  page.corrected("Coarse stage", "most interpolation of arcs, splines and NURBS makes short lines first",
-                 fmt::format("so do the host's splines: a G5 becomes {} lines, a G5.1 {}. An arc stays one command ({} "
-                             "lines): the card has generators for it. There are no B-splines or NURBS here",
-                             cubic.lines, quadratic.lines, arc.lines),
-                 cubic.lines > 10 && quadratic.lines > 10 && arc.lines == 0 && arc.arcs == 1 && !cubic.refused &&
-                     !quadratic.refused && !arc.refused);
+  page.corrected(
+      "Coarse stage", "most interpolation of arcs, splines and NURBS makes short lines first",
+      fmt::format("true of the host's splines: a G5 becomes {} lines, a G5.1 {}. An arc stays one command ({} "
+                  "lines), because the card has generators for arcs. The host has no B-splines or NURBS",
+                  cubic.lines, quadratic.lines, arc.lines),
+      cubic.lines > 10 && quadratic.lines > 10 && arc.lines == 0 && arc.arcs == 1 && !cubic.refused &&
+          !quadratic.refused && !arc.refused);
 }
 
 }  // namespace
 
 void steer_text(Page& page, const Progress& /*progress*/) {
-  page.heading("Claims in words");
+  page.heading("Claims without a table or figure");
   notation(page);
   page.open("Speed of the program", "both algorithms are fast enough for real-time applications",
             "the paper names neither a processor nor a rate, so there is nothing to compare with");
 }
 
 void one_shot_text(Page& page, const Progress& /*progress*/) {
-  page.heading("Claims in words");
+  page.heading("Claims without a table or figure");
   average_velocity(page);
   no_errors(page);
   references(page);

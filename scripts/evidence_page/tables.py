@@ -123,7 +123,7 @@ def papers(data: dict) -> str:
     verdicts = ["PASS", "CORRECTED", "ADDED", "OPEN", "FAIL"]
     rows = [[link(row["file"], row["paper"]), *(f'<span class="{"bad" if v == "FAIL" and row[v] else "plain"}">{row[v]}</span>' for v in verdicts)]
             for row in data["papers"]]
-    return table(["paper", *verdicts], rows, "Items of both papers, made again by trammel reproduce")
+    return table(["paper", *verdicts], rows, "Items of both papers, as trammel reproduce found them")
 
 
 def peers(data: dict) -> str:
