@@ -106,6 +106,20 @@ class MotionCoreBench : public MotionCorePair {
     in_ = {};
   }
 
+  // The same around the begin of a line that waits for its piece: the card is at rest until the line has arrived.
+  void streaming_set_before_the_piece() {
+    for (unsigned clocks = 0; clocks < 40; ++clocks) {
+      restart();
+      geometry_.add({line(20, kOnePulse / 2)});
+      for (unsigned i = 0; i < 200; ++i) {
+        if (i == 60) feed_.add({piece(20, kHalfRate)});
+        in_.setting = {i == clocks, reg::kStreaming, card_map::field::kStreamingOn | 200U << 8};
+        clock();
+      }
+    }
+    in_ = {};
+  }
+
   // The emergency stop disables the drives in motion, at a tick in every clock, although its reaction is a ramp:
   // ticks that are owed stay owed.
   void drives_disabled_in_motion() {

@@ -7,15 +7,16 @@
 namespace trammel::lockstep {
 namespace {
 
-// A bench of its own, so that the random programs do not depend on it.
-void health() {
+// On a bench of their own, so that the random programs do not depend on them.
+void separate_scenarios() {
   MotionCoreBench bench(1);
-  bench.health_follows_the_watchdog();
+  if (kEnables) bench.health_follows_the_watchdog();
+  if (kStreaming) bench.streaming_set_before_the_piece();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
 }
 
 void random_programs() {
-  if (kEnables) health();
+  separate_scenarios();
   MotionCoreBench bench(seed_from_environment(20261115));
   const std::uint64_t length = scaled(1'000'000);
   if (kPathCommands) bench.commands_around_ends();
