@@ -12,7 +12,7 @@ body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 76re
 table { border-collapse: collapse; display: block; margin: 1rem 0 2rem; overflow-x: auto; }
 caption { font-weight: 600; padding: .4rem 0; text-align: left; }
 th, td { border-bottom: 1px solid var(--line); padding: .2rem .6rem; text-align: left; vertical-align: top; }
-code { font-size: 13px; }
+code { font-size: 13px; } td:first-child code { white-space: nowrap; }
 .good, .bad, .none { white-space: nowrap; } .good { color: #18794e; font-weight: 600; } .bad { color: #c62828; font-weight: 700; } .none { color: #9a6700; }
 @media (prefers-color-scheme: dark) { .good { color: #4cc38a; } .bad { color: #ff6369; } .none { color: #f1a10d; } }
 .sums { display: flex; flex-wrap: wrap; gap: .6rem 2rem; padding: 0; } .sums li { list-style: none; } .sums b { display: block; font-size: 1.5rem; }
@@ -28,7 +28,7 @@ def sums(data: dict) -> str:
         (f"{sum(m['proof'] is not None for m in modules)} of {len(modules)}", "modules with a proof"),
         (f"{sum(m['seeded_bugs'] for m in modules):,}", "seeded bugs in the RTL"),
         (f"{sum(m['mutants'] for m in modules):,}", "mutants of the RTL"),
-        (f"{sum(j['result'] == 'passed' for j in judges)} of {len(judges)}", "judges from elsewhere passed"),
+        (f"{sum(j['result'] == 'passed' for j in judges)} of {len(judges)}", "third-party judges passed"),
         (f"{len(data['runs'])}", f"complete runs, {failed} of them failed"),
     ]
     return '<ul class="sums">' + "".join(f"<li><b>{escape(n)}</b>{escape(text)}</li>" for n, text in figures) + "</ul>"
@@ -41,8 +41,8 @@ def html(data: dict) -> str:
     return (f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
             f"<title>Evidence, {escape(release)}</title><style>{STYLE}</style>{charts.head(data['history'])}</head><body>\n"
             f"<h1>Evidence: {escape(release)}</h1>\n"
-            '<p>Which judge looked at what, and what it found. A run counts when it was complete and its sources were those of '
-            'the commit beside it; red is shown. <a href="evidence.json">The same as data</a>; '
+            '<p>The tests and checks ("judges") of this release candidate and their results. Each run was complete and used the '
+            'sources of the commit in its row; failures are red. <a href="evidence.json">The same as data</a>; '
             f'{tables.link("docs/developer/evidence.md", "which faults would have to occur together for a wrong pulse to go unnoticed")}.</p>\n'
             f"{sums(data)}\n" + "\n".join(sections) + "\n</body></html>\n")
 

@@ -46,11 +46,21 @@ def number(value: int) -> str:
 
 
 def runs(data: dict) -> str:
-    rows = [[code(run["job"]), mark(run["result"]), "; ".join(f"{number(n)} {escape(what)}" for what, n in sorted(run["counts"].items())),
+    rows = [[code(run["job"]), mark(run["result"]), "; ".join(f"{number(n)} {escape(what.replace('_', ' '))}" for what, n in sorted(run["counts"].items())),
              f"{run['processor_seconds']:,.0f}", f"{run['seconds']:,.0f}", code(run["commit"][:8]), code(run["command"])]
             for run in data["runs"]]
-    rows += [[code(job), '<span class="none">not recorded</span>', "", "", "", "", ""] for job in data["missing_runs"]]
-    return table(["run", "result", "counted", "processor s", "s", "commit", "command"], rows, "Complete runs of this release candidate")
+    return (table(["run", "result", "counted", "processor s", "s", "commit", "command"], rows, "Complete runs of this release candidate")
+            + missing(data["missing_runs"]))
+
+
+def missing(jobs: list[str]) -> str:
+    """The runs without a record; the shards of a part as one entry."""
+    shards: dict = {}
+    for job in jobs:
+        part, _, number = job.removeprefix("part-").rpartition("-")
+        shards.setdefault(part if number.isdigit() else job.removeprefix("part-"), []).append(number)
+    names = [code(part) + (f" (shards {', '.join(numbers)})" if numbers[0].isdigit() else "") for part, numbers in shards.items()]
+    return f'<p><span class="none">Not recorded yet</span>: {", ".join(names)}.</p>' if names else ""
 
 
 def modules(data: dict) -> str:
@@ -109,7 +119,7 @@ def foreign_judges(data: dict) -> str:
         seen += [code(job) for job in judge["runs"]]
         rows.append([link(judge["page"], judge["name"]), escape(judge["version"]), escape(judge["judges"]), mark(judge["result"]),
                      ", ".join(seen)])
-    return table(["judge", "version", "what it judges", "result", "in"], rows, "Judges that nobody here wrote")
+    return table(["judge", "version", "what it judges", "result", "in"], rows, "Third-party judges")
 
 
 def sizes(data: dict) -> str:
@@ -129,7 +139,7 @@ def papers(data: dict) -> str:
 def peers(data: dict) -> str:
     rows = [[escape(row["what"]), escape(row["peer"]), with_address(row["source"]), escape(row["here"]), code(row["shown_by"])]
             for row in data["peers"]]
-    return table(["what", "another controller", "read in", "this card", "shown by"], rows, "Figures of others")
+    return table(["what", "another controller", "read in", "this card", "shown by"], rows, "Figures of other controllers")
 
 
 def with_address(source: str) -> str:
