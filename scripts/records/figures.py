@@ -7,7 +7,7 @@ from typing import Callable, Dict
 
 # Lines of ctest's whole log: the beginning of a test of the lockstep NAME, and the count that it prints at its end.
 LOCKSTEP = re.compile(r"^\d+/\d+ Testing: (?:lockstep\.(\w+)\.)?|^(\d+) clocks compared in lockstep$", re.M)
-PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) +(\S+).* s  (ok|FAILED)", re.M)
+PROOF_RUN = re.compile(r"^(?:lemma|proof|bounded|cover|bug) +(\w+).* s  (ok|FAILED)", re.M)
 MUTANTS = ("tried", "killed")
 PROOFS = ("runs", "as_expected")
 

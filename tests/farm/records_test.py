@@ -139,7 +139,7 @@ class Figures(InAFolder):
 
     def test_proofs_have_their_covers_and_seeded_bugs(self):
         log = ("== frame_crc: bit by bit\nproof    frame_crc      0.3 s  ok\ncover    frame_crc byte   0.5 s  ok\n"
-               "bug      frame_crc tap_lost  0.3 s  FAILED (status 1)\nlemma    steer     1.0 s  ok\nnothing  frame_crc  1.0 s  ok\n")
+               "bug      frame_crc tap_lost  0.3 s  FAILED (status 1)\nlemma    steer, z3     1.0 s  ok\nnothing  frame_crc  1.0 s  ok\n")
         self.assertEqual(figures.proofs(log), {"frame_crc": {"runs": 3, "as_expected": 2}, "steer": {"runs": 1, "as_expected": 1}})
         self.assertEqual(counts.of_text(log), {"proof_runs": 4, "proof_runs_as_expected": 3})
 
