@@ -154,6 +154,8 @@ class Judge {
       if (jerk_[a] <= 0 || new_path) continue;
       const double jumped = course_.pulses_a_tick[a] * std::abs(acceleration(now) - acceleration(last_));
       verdict.acceleration_jump.look((jumped - 2 * kUpdate * jerk_[a]) / acceleration_[a], now.path->command);
+      const double clocks = jumped / jerk_[a] - 2 * kUpdate - 1;
+      verdict.acceleration_jump_ticks.look(clocks * std::max(before, after), now.path->command);
     }
   }
 

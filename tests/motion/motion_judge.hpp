@@ -37,6 +37,9 @@ struct MotionVerdict {
   Worst acceleration;       // of an axis, tangential and centripetal together, relative to max_acceleration
   Worst jerk;               // of an axis, along and across the path, relative to max_jerk; 0 if no axis has one
   Worst acceleration_jump;  // at ends of pieces, beyond the jerk of two updates, relative to max_acceleration
+  // The same jump beyond the jerk of two updates and a clock, relative to the jerk of one tick: pieces have whole
+  // ticks.
+  Worst acceleration_jump_ticks;
   Worst rate_jump;          // at ends of pieces, relative to two updates of acceleration plus 0.1 % of the rate
   Worst rest;               // first and last rate at a stop, relative to the rule for the floor
   Worst corner;             // speed through a corner, relative to what the rules for corners allow
