@@ -255,6 +255,21 @@ TEST(Bridge, ANewOwnerMovesNothingBeforeTheMachineWasDisabled) {
 }
 
 // Targets that come during a hold are followed after it. Eight seconds at rest do not fill a queue.
+// A machine that is on and not followed is told about once, after a quarter of a second.
+TEST(Bridge, TellsWhyItDoesNotFollow) {
+  ServoBench bench;
+  const auto tells = ::testing::Contains(::testing::HasSubstr("not followed: it was not seen off"));
+  for (int n = 0; n < 249; ++n) bench.period({});
+  EXPECT_THAT(bench.notes, ::testing::Not(tells));
+  for (int n = 0; n < 300; ++n) bench.period({});
+  EXPECT_THAT(bench.notes, tells.Times(1));
+  bench.notes.clear();
+  bench.enable();
+  for (int n = 0; n < 300; ++n) bench.period({});
+  EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_STREAMING});
+  EXPECT_THAT(bench.notes, ::testing::Not(tells));
+}
+
 TEST(Bridge, AHoldLosesNothing) {
   ServoBench bench;
   bench.enable();

@@ -58,6 +58,9 @@ class Bench:
             for log in ("owner.log", "linuxcnc.out", "result.json"):
                 if (self.folder / log).exists():
                     print(f"--- {log}\n" + (self.folder / log).read_text()[-3000:])
+            if (self.folder / "record").exists():
+                lines = self.text("record").splitlines()
+                print(f"--- record: {len(lines)} lines; the first and the last ones:", *lines[:5], *lines[-5:], sep="\n")
 
     def configure(self, scenario, lead=30):
         """Configures the example with the tests' user interface. A shared machine without a realtime kernel is late by

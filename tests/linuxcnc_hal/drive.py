@@ -136,6 +136,10 @@ try:
     globals()[pathlib.Path("scenario").read_text().strip()]()
 except Exception as error:  # the test reports it
     result["failure"] = repr(error)
+    names = ("link-ok", "fault", "at-rest", "held", "latency", "ahead", "packet-error-level")
+    result["pins"] = {name: pin(name) for name in names}
+    for name in ("enable", "position-cmd", "position-fb", "position-scale"):
+        result["pins"][name] = [pin(f"joint.{n:02d}.{name}") for n in range(3)]
 for name in ("longest-read", "longest-write", "longest-period", "longest-silence", "underrun", "late", "dropped", "refused",
              "packet-error-total", "stop-cause", "read.tmax", "write.tmax"):
     result[name] = pin(name)

@@ -18,6 +18,10 @@ namespace field = card_map::field;
 // Per turn. After a stall many periods are in the ring, and the status must be updated while they are processed.
 constexpr unsigned kMostPeriods = 8;
 
+// After this many periods of a machine that is on and is not followed, the reason is told: a quarter of a second at 1
+// kHz, as long as LinuxCNC's component waits for the card.
+constexpr unsigned kIgnoredPeriods = 250;
+
 std::uint32_t cause_of(std::uint32_t faults) {
   return faults == 0 ? 0 : static_cast<std::uint32_t>(__builtin_ctz(faults)) + 1;
 }
@@ -89,7 +93,10 @@ void Bridge::take(const trammel_period& period) {
   }
   if (clears && !clear_seen_) clear();
   clear_seen_ = clears;
-  if (!enabled) armed_ = !stopped_;
+  if (!enabled) {
+    armed_ = !stopped_;
+    ignored_ = 0;
+  }
   guarded([&] {
     const std::uint32_t refused = look_->set_index_waits(period.flags >> TRAMMEL_PERIOD_INDEX_SHIFT);
     if ((refused & ~index_refused_) != 0) {
@@ -105,13 +112,21 @@ void Bridge::take(const trammel_period& period) {
 
 void Bridge::take_enabled(const trammel_period& period) {
   if (!stream_.is_open()) {
-    if (!armed_ || stopped_) return;
+    if (stopped_) return;
+    if (!armed_) return ignore("it was not seen off since the last stop, or since this program started");
     // After a stop the time base ramps back to full ratio first.
-    if (look_->snapshot().ratio != driver::Card::kFullRatio) return;
+    const std::uint32_t ratio = look_->snapshot().ratio;
+    if (ratio != driver::Card::kFullRatio) return ignore(fmt::format("the card's ratio is {} / 65536", ratio));
     open();
   }
+  ignored_ = 0;
   set_hold((period.flags & TRAMMEL_PERIOD_HOLD) != 0);
   stream_.follow(period, holding_ && look_->snapshot().status.held);
+}
+
+void Bridge::ignore(const std::string& why) {
+  if (++ignored_ != kIgnoredPeriods) return;
+  tell(fmt::format("the machine is on, but its targets are not followed: {}; switch it off and on again", why));
 }
 
 void Bridge::open() {

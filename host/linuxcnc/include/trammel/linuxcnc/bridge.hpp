@@ -56,6 +56,7 @@ class Bridge {
   void take_periods();
   void take(const trammel_period& period);
   void take_enabled(const trammel_period& period);
+  void ignore(const std::string& why);
   void take_settings();
   void serve_path();
   bool path_turn();
@@ -93,6 +94,7 @@ class Bridge {
   bool holding_ = false;      // this bridge has set the hold
   bool clear_seen_ = false;   // the last period had CLEAR
   bool inside_ = false;       // in a call that waits: periods are read, but move nothing
+  unsigned ignored_ = 0;      // periods of a machine that is on and is not followed, without a break
   std::uint32_t last_flags_ = 0;
   std::uint32_t index_refused_ = 0;
   bool hal_there_ = false;
