@@ -138,7 +138,8 @@ class Runs:
 
 def modules_of(chosen: List[Lockstep]) -> Dict[str, str]:
     """The file of each module in the locksteps' sources, by its name."""
-    files = {os.path.normpath(f"rtl/{source}") for each in chosen for source in each.sources}
+    # An absolute path is a source of the tests, which may have the name of a module that it stands for.
+    files = {os.path.normpath(os.path.join("rtl", source)) for each in chosen for source in each.sources}
     return {Path(file).stem: file for file in files if is_judged(file)}
 
 

@@ -195,6 +195,13 @@ class Runs(InAProject):
             self.coverage(WHOLE, no_run=False)
 
 
+class Modules(unittest.TestCase):
+    def test_a_source_of_the_tests_is_no_module_even_with_the_name_of_one(self):
+        names = [f"module{n}" for n in range(20)]  # files are a set: one pair could be in the right order by chance
+        sources = [source for name in names for source in (f"card/{name}.sv", f"/project/verif/{name}.sv")]
+        self.assertEqual(rtl.modules_of([rtl.Lockstep("all", sources)]), {name: f"rtl/card/{name}.sv" for name in names})
+
+
 def gcov_line(number, count, *branches, function="f"):
     return {"line_number": number, "count": count, "function_name": function,
             "branches": [{"count": taken, "throw": throw} for taken, throw in branches]}

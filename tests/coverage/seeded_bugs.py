@@ -25,6 +25,8 @@ BUGS = [
     ("waivers.py", "SHORTEST_REASON = 20", "SHORTEST_REASON = 1", "Verdict.test_malformed_waivers_are_refused"),
     ("rtl.py", "wrong + not_clocked(modules) if whole", "wrong if whole", "Verdict.test_a_module_that_no_lockstep_clocks_fails"),
     ("rtl.py", 'and not file.startswith("boards/sim/")', "", "Verdict.test_other_files_do_not_count"),
+    ("rtl.py", 'os.path.join("rtl", source)', 'f"rtl/{source}"',
+     "Modules.test_a_source_of_the_tests_is_no_module_even_with_the_name_of_one"),
     ("rtl.py", 'report.passed(found) and not found["failed"]', "report.passed(found)",
      "Runs.test_a_lockstep_that_fails_fails_though_all_is_covered"),
     ("rtl.py", "                old.unlink()", "                pass", "Runs.test_old_counts_do_not_stand_for_a_run_that_left_none"),
