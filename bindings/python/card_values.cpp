@@ -45,30 +45,33 @@ void bind_identification(nb::module_& m) {
 
 void bind_state(nb::module_& m) {
   nb::class_<driver::Status>(m, "Status", "The card's STATUS register.")
-      .def_ro("busy", &driver::Status::busy, "Something runs or is queued.")
-      .def_ro("direct", &driver::Status::direct, "A one-shot line runs.")
-      .def_ro("path_active", &driver::Status::path_active, "A path is under way.")
-      .def_ro("feed_active", &driver::Status::feed_active, "A piece of feed is under way.")
-      .def_ro("held", &driver::Status::held, "The time base stands: its ratio is 0.")
-      .def_ro("ended", &driver::Status::ended, "The card has passed an END.")
+      .def_ro("busy", &driver::Status::busy, "Something is under way or queued.")
+      .def_ro("direct", &driver::Status::direct, "A one-shot line (direct move) is under way.")
+      .def_ro("path_active", &driver::Status::path_active, "A path or a direct move is under way.")
+      .def_ro("feed_active", &driver::Status::feed_active, "A feed piece is under way.")
+      .def_ro("held", &driver::Status::held, "The time base's ratio is 0.")
+      .def_ro("ended", &driver::Status::ended, "END was executed, and nothing has begun since.")
       .def_ro("faulted", &driver::Status::faulted, "A fault is latched.")
       .def_ro("refused", &driver::Status::refused, "A refusal is latched.")
       .def_ro("snapshot", &driver::Status::snapshot, "A snapshot is under way.")
-      .def_ro("incomplete", &driver::Status::incomplete, "The stream stands inside a command.")
+      .def_ro("incomplete", &driver::Status::incomplete, "The stream has written part of a command.")
       .def_ro("stopping", &driver::Status::stopping,
-              "The card is on its way to a stop: on a ramp, or making the last pulses.")
-      .def_ro("geometry_low", &driver::Status::geometry_low, "The geometry queue is below its watermark.")
-      .def_ro("feed_low", &driver::Status::feed_low, "The feed queue is below its watermark.")
-      .def_ro("probed", &driver::Status::probed, "A probe has tripped.")
+              "The card is stopping: it is on a ramp, or completes the last pulses.")
+      .def_ro("geometry_low", &driver::Status::geometry_low,
+              "Fewer halfwords are in the geometry queue than its watermark.")
+      .def_ro("feed_low", &driver::Status::feed_low, "Fewer halfwords are in the feed queue than its watermark.")
+      .def_ro("probed", &driver::Status::probed, "A probe has tripped; clear_probe() clears it.")
       .def_ro("probe_missed", &driver::Status::probe_missed, "Probing paths ended without an edge.")
       .def_ro("waiting", &driver::Status::waiting, "The card waits for an input.")
-      .def_ro("underrun", &driver::Status::underrun, "The time base is held because the queues run dry.")
-      .def_ro("stale", &driver::Status::stale, "Position streaming goes on without a new period.")
-      .def_ro("button_hold", &driver::Status::button_hold, "The feed hold button holds, until cycle start.")
+      .def_ro("underrun", &driver::Status::underrun,
+              "The under-run hold is active, or a piece that begins from rest waits for commands.")
+      .def_ro("stale", &driver::Status::stale, "Position streaming continues without a new period.")
+      .def_ro("button_hold", &driver::Status::button_hold, "The feed hold input holds the card until cycle start.")
       .def_ro("enabled", &driver::Status::enabled, "The drives are enabled.")
-      .def_ro("enable_waits", &driver::Status::enable_waits, "Motion waits for the drives.")
+      .def_ro("enable_waits", &driver::Status::enable_waits, "Motion waits for the enable of the drives.")
       .def_ro("settled", &driver::Status::settled,
-              "At a ratio of 0 or stopped by a fault: each tick taken has made its steps, and each step its pulse.");
+              "For 31 clocks, at a ratio of 0 or stopped by a fault: every tick taken has made its steps, every step "
+              "its pulse.");
   nb::class_<driver::Snapshot>(m, "Snapshot", "State of the card in one clock.")
       .def_ro("time", &driver::Snapshot::time, "Clocks since reset.")
       .def_ro("status", &driver::Snapshot::status, "STATUS of that clock.")
@@ -80,19 +83,20 @@ void bind_state(nb::module_& m) {
       .def_ro("feed_begun", &driver::Snapshot::feed_begun,
               "Commands begun from the feed queue; the count wraps at 2^32.")
       .def_ro("position", &driver::Snapshot::position, "Pulses, by axis; the counts wrap at 2^32.");
-  nb::class_<driver::Rest>(m, "Rest", "Where the last stop has left the card, latched before it dropped anything.")
-      .def_ro("time", &driver::Rest::time, "Clocks since reset; 0: no stop since then.")
+  nb::class_<driver::Rest>(m, "Rest",
+                           "The state in which the last stop left the card, latched before anything was dropped.")
+      .def_ro("time", &driver::Rest::time, "Clocks from the reset to the stop; 0: no stop since the reset.")
       .def_ro("status", &driver::Rest::status, "STATUS of that clock.")
-      .def_ro("faults", &driver::Rest::faults, "Faults that had come by then: a mask for describe_faults().")
+      .def_ro("faults", &driver::Rest::faults, "Faults latched at that time: a mask for describe_faults().")
       .def_ro("geometry_begun", &driver::Rest::geometry_begun,
               "Commands begun from the geometry queue; the count wraps at 2^32.")
       .def_ro("feed_begun", &driver::Rest::feed_begun, "Commands begun from the feed queue; the count wraps at 2^32.")
       .def_ro("ticks_left", &driver::Rest::ticks_left,
-              "Ticks that the command begun last has not taken (a one-shot line: clocks); 0 where no path was under "
-              "way, and where it is not exact.")
+              "Ticks that the last command has not taken yet (of a one-shot line: clocks). 0 if no path was under way, "
+              "or if the position is not exact.")
       .def_ro("position", &driver::Rest::position, "Pulses, by axis; the counts wrap at 2^32.")
       .def_prop_ro("exact", &driver::Rest::exact,
-                   "Whether the position is that of all ticks taken; not so after an abort in motion.");
+                   "Whether the position includes all ticks taken. It does not after an abort in motion.");
 }
 
 }  // namespace
@@ -101,9 +105,9 @@ void bind_card_values(nb::module_& m) {
   bind_identification(m);
   bind_state(m);
   nb::class_<driver::OneShotPlan>(m, "LinePlan", "A planned one-shot line.")
-      .def_prop_ro("parts", &driver::OneShotPlan::size, "Commands that the line is made of.")
+      .def_prop_ro("parts", &driver::OneShotPlan::size, "Number of commands.")
       .def_prop_ro("clocks", &driver::OneShotPlan::clocks, "Duration, clocks of the card.")
-      .def_prop_ro("slowed", &driver::OneShotPlan::slowed, "Whether a limit made it slower than asked for.");
+      .def_prop_ro("slowed", &driver::OneShotPlan::slowed, "Whether a limit made it slower than requested.");
   nb::enum_<driver::StepMode>(m, "StepMode", "Signals at an axis's two pins.")
       .value("STEP_DIRECTION", driver::StepMode::kStepDirection, "A STEP and a DIR pin.")
       .value("UP_DOWN", driver::StepMode::kUpDown, "A pin for pulses up, one for pulses down.")

@@ -47,12 +47,13 @@ void bind_faults(nb::module_& m) {
 
 void bind_values(nb::module_& m) {
   using driver::CaptureState;
-  nb::class_<CaptureState>(m, "CaptureState", "What a capture unit has.")
-      .def_ro("pending", &CaptureState::pending, "An edge has come, and is not confirmed, withdrawn or written yet.")
-      .def_ro("valid", &CaptureState::valid, "A capture stands.")
-      .def_ro("overrun", &CaptureState::overrun, "A confirmed edge was lost, since a capture stood when it came.")
-      .def_ro("active", &CaptureState::active, "The level that the captured edge led to.");
-  nb::class_<PythonCaptures>(m, "CaptureStates", "What the card's capture units have.")
+  nb::class_<CaptureState>(m, "CaptureState", "State of a capture unit.")
+      .def_ro("pending", &CaptureState::pending, "An edge has come and is not yet confirmed, withdrawn or written.")
+      .def_ro("valid", &CaptureState::valid, "A capture is ready to be read.")
+      .def_ro("overrun", &CaptureState::overrun,
+              "A confirmed edge was lost, because an earlier capture had not been read.")
+      .def_ro("active", &CaptureState::active, "The level after the captured edge.");
+  nb::class_<PythonCaptures>(m, "CaptureStates", "State of the card's capture units.")
       .def_prop_ro(
           "units",
           [](const PythonCaptures& of) {
@@ -62,18 +63,18 @@ void bind_values(nb::module_& m) {
           "A CaptureState for each unit.")
       .def_prop_ro(
           "snapshots", [](const PythonCaptures& of) { return of.states.snapshots; },
-          "Snapshots taken for captures, withdrawn ones too; the count wraps at 2^16.");
-  nb::class_<driver::Capture>(m, "Capture", "An edge of an input, as it was at the pin.")
+          "Snapshots taken for captures, including withdrawn ones; the count wraps at 2^16.");
+  nb::class_<driver::Capture>(m, "Capture", "An edge of an input, at the time when it was at the pin.")
       .def_ro("at", &driver::Capture::at, "Snapshot of the edge: its time and the positions.")
-      .def_ro("active", &driver::Capture::active, "The level that it led to.")
-      .def_ro("overrun", &driver::Capture::overrun, "Further edges were lost behind it.");
-  nb::class_<driver::CaptureQueue>(m, "CaptureQueue", "What the card's queue of captures has.")
+      .def_ro("active", &driver::Capture::active, "The level after the edge.")
+      .def_ro("overrun", &driver::Capture::overrun, "Later edges were lost.");
+  nb::class_<driver::CaptureQueue>(m, "CaptureQueue", "State of the card's queue of captures.")
       .def_ro("captures", &driver::CaptureQueue::captures, "In it, 0 to 16.")
       .def_ro("lost", &driver::CaptureQueue::lost, "Since reset, because it was full; the count wraps at 2^16.");
   nb::class_<driver::QueuedCapture>(m, "QueuedCapture", "An edge of an input, from the queue.")
       .def_ro("at", &driver::QueuedCapture::at, "Snapshot of the edge: its time and the positions.")
       .def_ro("unit", &driver::QueuedCapture::unit, "The unit that took it.")
-      .def_ro("active", &driver::QueuedCapture::active, "The level that it led to.");
+      .def_ro("active", &driver::QueuedCapture::active, "The level after the edge.");
   nb::class_<driver::SoftRange>(m, "SoftRange", "Positions that an axis may go to, pulses as the card counts them.")
       .def(nb::init<std::int32_t, std::int32_t>(), "minus"_a, "plus"_a, "From minus to plus, both included.")
       .def_ro("minus", &driver::SoftRange::minus, "The lowest position.")
@@ -99,7 +100,7 @@ void bind_captures(nb::class_<PythonCard>& card) {
       .def("read_captures", waiting([](PythonCard& of) {
              return PythonCaptures{of.card.read_captures(), of.card.captures_present()};
            }),
-           "What the card's capture units have.")
+           "State of the card's capture units.")
       .def("take_capture", waiting([](PythonCard& of, unsigned unit) { return of.card.take_capture(unit); }), "unit"_a,
            "The capture that stands, which is cleared with it; None where there is none.")
       .def("wait_for_capture", waiting([](PythonCard& of, unsigned unit, std::int64_t ns) {

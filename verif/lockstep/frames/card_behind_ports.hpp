@@ -82,15 +82,7 @@ class CardBehindPorts {
 
   // For a master at the AXI4-Lite port (AxiHostOf), which leaves resets to reset().
   void run(const model::CardModel::Inputs& inputs, std::uint64_t clocks) {
-    in.axi.awvalid = inputs.awvalid;
-    in.axi.awaddr = inputs.awaddr;
-    in.axi.wvalid = inputs.wvalid;
-    in.axi.wdata = inputs.wdata;
-    in.axi.wstrb = inputs.wstrb;
-    in.axi.bready = inputs.bready;
-    in.axi.arvalid = inputs.arvalid;
-    in.axi.araddr = inputs.araddr;
-    in.axi.rready = inputs.rready;
+    in.axi.set_master(inputs);
     pins = inputs.pins;
     emergency_stop = inputs.emergency_stop;
     for (; clocks != 0; --clocks) clock();

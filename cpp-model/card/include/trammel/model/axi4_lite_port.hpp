@@ -12,16 +12,20 @@ class Axi4LitePort {
   static constexpr std::uint8_t kSlaveError = 2;
   static constexpr std::uint8_t kAllStrobes = 0xF;
 
-  struct Inputs {
+  // What the bus master drives.
+  struct Master {
     bool awvalid = false;
-    std::uint32_t awaddr = 0;  // byte address, 12 bits
     bool wvalid = false;
-    std::uint32_t wdata = 0;
-    std::uint8_t wstrb = 0;
     bool bready = false;
     bool arvalid = false;
-    std::uint32_t araddr = 0;  // byte address, 12 bits
     bool rready = false;
+    std::uint8_t wstrb = 0;
+    std::uint32_t awaddr = 0;  // byte address, 12 bits
+    std::uint32_t araddr = 0;  // byte address, 12 bits
+    std::uint32_t wdata = 0;
+  };
+  struct Inputs : Master {
+    void set_master(const Master& master) { static_cast<Master&>(*this) = master; }
     // from the inner port
     bool ack = false;
     bool error = false;

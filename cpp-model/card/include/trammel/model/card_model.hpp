@@ -15,18 +15,9 @@ class CardModel {
   using Config = CardConfig;
   using Outputs = CoreModel::Outputs;
 
-  // Pins of the AXI4-Lite port, named as on the card; see Axi4LitePort.
-  struct Inputs {
-    bool rst = false;  // resets the port at once, the core one clock later (registered)
-    bool awvalid = false;
-    bool wvalid = false;
-    bool bready = false;
-    bool arvalid = false;
-    bool rready = false;
-    std::uint8_t wstrb = 0;
-    std::uint32_t awaddr = 0;
-    std::uint32_t araddr = 0;
-    std::uint32_t wdata = 0;
+  // Pins of the AXI4-Lite port, and the card's other inputs.
+  struct Inputs : Axi4LitePort::Master {
+    bool rst = false;             // resets the port at once, the core one clock later (registered)
     std::uint32_t pins = 0;       // inputs of the card, bit n: input n
     bool emergency_stop = false;  // level at its pin
   };
@@ -79,15 +70,7 @@ void CardModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   if (reset_now || in.rst)
     return state_.port.reset();  // the pin itself resets the port, and so does its registered copy
   Axi4LitePort::Inputs bus;
-  bus.awvalid = in.awvalid;
-  bus.awaddr = in.awaddr;
-  bus.wvalid = in.wvalid;
-  bus.wdata = in.wdata;
-  bus.wstrb = in.wstrb;
-  bus.bready = in.bready;
-  bus.arvalid = in.arvalid;
-  bus.araddr = in.araddr;
-  bus.rready = in.rready;
+  bus.set_master(in);
   bus.ack = answer.ack;
   bus.error = answer.error;
   bus.data = answer.data;
