@@ -72,6 +72,27 @@ TEST(Bridge, DisabledInMotionItRampsDownAlongItsLine) {
   EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_IDLE});
 }
 
+// The card begins when the lead is queued. A machine that is off again before that has not moved, and nothing is wrong.
+TEST(Bridge, DisabledBeforeTheLeadIsQueuedItDoesNotMove) {
+  ServoBench bench;
+  trammel_settings settings{};
+  settings.lead_periods = 30;
+  bench.give(settings);
+  for (int n = 0; n < 3; ++n) bench.period({}, 0);
+  for (int n = 1; n <= 10; ++n) bench.period({n * 5.0});
+  EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_STREAMING});
+  for (int n = 0; n < 10; ++n) bench.period({}, 0);
+  EXPECT_FALSE(is_stopped(bench)) << bench.status().text;
+  EXPECT_EQ(bench.status().state, std::uint32_t{TRAMMEL_IDLE});
+  EXPECT_FALSE(bench.card->busy());
+  EXPECT_EQ(bench.status().position[0], 0);
+  EXPECT_TRUE(bench.steps.empty());
+  bench.enable();
+  for (int n = 1; n <= 100; ++n) bench.period({n * 1.0});
+  for (int n = 0; n < 100; ++n) bench.period({100});
+  EXPECT_EQ(bench.status().position[0], 100);
+}
+
 // At rest, a missing period has no effect. In motion it is a stop.
 TEST(Bridge, AMissingPeriodAtRestIsCountedAndForgotten) {
   ServoBench bench;

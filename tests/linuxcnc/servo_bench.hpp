@@ -81,6 +81,11 @@ class ServoBench : public driver::StepSink, public ServoRecord {
     ++memory.period_head;
     return true;
   }
+  // Writes the component's settings.
+  void give(const trammel_settings& settings) {
+    region.memory().settings = settings;
+    region.memory().settings_sequence += 2;
+  }
   // Runs the card until the next period. The inputs follow the motors.
   void pass(std::uint64_t clocks = kServoClocks) {
     due += clocks;

@@ -133,7 +133,8 @@ class Bench:
 
     def finish(self, seconds=120, lead=None):
         """Waits for LinuxCNC, then ends the owner in order; returns the results of the inner test. Raises Spoiled if
-        that test failed, or the motion was stopped, and this machine paused for longer than `lead` periods."""
+        that test failed, or the motion was stopped, and this machine paused for longer than `lead` periods; also if
+        LinuxCNC's thread no longer runs, when nothing can move."""
         wait_until(lambda: self.process.poll() is not None, seconds, "the end of LinuxCNC")
         self.end_owner()
         if not (self.folder / "result.json").exists():
@@ -142,6 +143,8 @@ class Bench:
         broken = "failure" in result or result["underrun"] or result["refused"] or result.get("errors")
         if broken and lead is not None and stalled(result, lead):
             raise Spoiled(f"the machine paused for {longest_pause(result) / 1e6:.0f} ms: {result}")
+        if result.get("thread stands"):
+            raise Spoiled(f"LinuxCNC's thread no longer runs: {result}")
         if "failure" in result:
             raise RuntimeError(f"in LinuxCNC: {result}")
         return result

@@ -55,8 +55,12 @@ def stands():
     return pin("at-rest") and seen == counts()
 
 
+def joints(name):
+    return [pin(f"joint.{n:02d}.{name}") for n in range(3)]
+
+
 def counts():
-    return [pin(f"joint.{n:02d}.counts") for n in range(3)]
+    return joints("counts")
 
 
 def begin():
@@ -139,7 +143,10 @@ except Exception as error:  # the test reports it
     names = ("link-ok", "fault", "at-rest", "held", "latency", "ahead", "packet-error-level")
     result["pins"] = {name: pin(name) for name in names}
     for name in ("enable", "position-cmd", "position-fb", "position-scale"):
-        result["pins"][name] = [pin(f"joint.{n:02d}.{name}") for n in range(3)]
+        result["pins"][name] = joints(name)
+    # The generators move the commands in each period.
+    time.sleep(1)
+    result["thread stands"] = result["pins"]["position-cmd"] == joints("position-cmd")
 for name in ("longest-read", "longest-write", "longest-period", "longest-silence", "underrun", "late", "dropped", "refused",
              "packet-error-total", "stop-cause", "read.tmax", "write.tmax"):
     result[name] = pin(name)

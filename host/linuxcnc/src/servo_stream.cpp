@@ -98,7 +98,9 @@ void ServoStream::close() {
 // fault. This fault is expected, and cleared here. In a hold no period is missing, so the card is aborted, which moves
 // nothing.
 void ServoStream::end_on_ramp() {
+  const bool has_begun = stream_->has_begun();
   stream_.reset();
+  if (!has_begun) return drop();
   const auto deadline = std::chrono::seconds(2);
   try {
     for (std::chrono::nanoseconds waited{0}; !card_.read_status().faulted; waited += kLook) {
@@ -116,6 +118,13 @@ void ServoStream::end_on_ramp() {
   if ((faults & ~card_map::field::kFaultMissingPeriod) != 0) throw driver::FaultError(faults, "end of a stream");
   if (faults != 0) card_.clear_faults();
   card_.parts().registers.write(card_map::reg::kStreaming, 0, "position stream: end");
+}
+
+// For a stream of fewer periods than its lead, of which the card has executed none.
+void ServoStream::drop() {
+  card_.abort();
+  card_.parts().registers.write(card_map::reg::kStreaming, 0, "position stream: end");
+  note_end();
 }
 
 void ServoStream::abandon() {

@@ -106,6 +106,8 @@ class PositionStream {
   std::uint64_t stale_ticks() const { return all_stale_ticks_; }
   // Those of stale_ticks() that are still to be subtracted from future periods.
   std::uint64_t ticks_behind() const { return behind_; }
+  // Whether the card executes the periods. It does once `ahead` periods were sent; before that nothing moves.
+  bool has_begun() const { return fed_; }
   // Positions of the axes when all sent periods have ended, whole pulses.
   Positions position() const;
 

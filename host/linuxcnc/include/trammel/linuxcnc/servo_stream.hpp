@@ -73,6 +73,7 @@ class ServoStream {
  private:
   std::int64_t duration_of(const trammel_period& period, std::uint64_t periods);
   bool can_skip(bool moves, bool held);
+  void drop();
   void note_end();
 
   driver::Card& card_;
