@@ -12,24 +12,34 @@ class Axi4LitePort {
   static constexpr std::uint8_t kSlaveError = 2;
   static constexpr std::uint8_t kAllStrobes = 0xF;
 
-  // What the bus master drives.
-  struct Master {
+  struct Inputs {
     bool awvalid = false;
+    std::uint32_t awaddr = 0;  // byte address, 12 bits
     bool wvalid = false;
+    std::uint32_t wdata = 0;
+    std::uint8_t wstrb = 0;
     bool bready = false;
     bool arvalid = false;
-    bool rready = false;
-    std::uint8_t wstrb = 0;
-    std::uint32_t awaddr = 0;  // byte address, 12 bits
     std::uint32_t araddr = 0;  // byte address, 12 bits
-    std::uint32_t wdata = 0;
-  };
-  struct Inputs : Master {
-    void set_master(const Master& master) { static_cast<Master&>(*this) = master; }
+    bool rready = false;
     // from the inner port
     bool ack = false;
     bool error = false;
     std::uint32_t data = 0;
+
+    // Takes over what a bus master drives, from a struct with fields of the same names.
+    template <class Signals>
+    void set_master(const Signals& from) {
+      awvalid = from.awvalid;
+      awaddr = from.awaddr;
+      wvalid = from.wvalid;
+      wdata = from.wdata;
+      wstrb = from.wstrb;
+      bready = from.bready;
+      arvalid = from.arvalid;
+      araddr = from.araddr;
+      rready = from.rready;
+    }
   };
 
   struct Outputs {

@@ -15,9 +15,18 @@ class CardModel {
   using Config = CardConfig;
   using Outputs = CoreModel::Outputs;
 
-  // Pins of the AXI4-Lite port, and the card's other inputs.
-  struct Inputs : Axi4LitePort::Master {
-    bool rst = false;             // resets the port at once, the core one clock later (registered)
+  // Pins of the AXI4-Lite port, named as on the card; see Axi4LitePort.
+  struct Inputs {
+    bool rst = false;  // resets the port at once, the core one clock later (registered)
+    bool awvalid = false;
+    bool wvalid = false;
+    bool bready = false;
+    bool arvalid = false;
+    bool rready = false;
+    std::uint8_t wstrb = 0;
+    std::uint32_t awaddr = 0;
+    std::uint32_t araddr = 0;
+    std::uint32_t wdata = 0;
     std::uint32_t pins = 0;       // inputs of the card, bit n: input n
     bool emergency_stop = false;  // level at its pin
   };
