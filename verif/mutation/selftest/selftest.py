@@ -250,6 +250,11 @@ class Instrument(unittest.TestCase):
         self.assertEqual({m.mutated for m in self.mutants(text)},
                          {"u: .rst_i('0)", "u: .rst_i('1)", "u: .a_i('0)", "u: .a_i('1)"})
 
+    def test_a_registers_address_changes_by_a_word(self):
+        self.assertEqual(self.texts("x = N + ADDR_TIME;", "localparam N = 2, ADDR_TIME = 12'h40;"),
+                         {"", "x = N - ADDR_TIME", "x = N", "x = ADDR_TIME", "x = (N ^ 1'b1) + ADDR_TIME",
+                          "x = N + (ADDR_TIME ^ 12'd4)"})
+
     def test_constants_of_the_build_stay(self):
         self.assertEqual(self.texts("x = {2{a}};"), {"", "x = {2{~a}}"})
         self.assertEqual(self.texts("x = 4'(a);"), {"", "x = 4'(~a)"})
