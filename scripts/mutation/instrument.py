@@ -210,7 +210,7 @@ class Instrumenter:
         if kind == "IdentifierName":
             return self.chosen(node, operators.name(text, self.names, is_value), text)
         if kind == "ScopedName":
-            return self.chosen(node, [Alternative("constant", f"({text} ^ 1'b1)")], text)
+            return self.chosen(node, [operators.constant(text)], text)
         if kind == "IdentifierSelectName":
             alternatives = operators.select(node, self.names, self.plain, is_value)
             return self.chosen(node, alternatives, text)

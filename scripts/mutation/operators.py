@@ -31,11 +31,9 @@ NEGATIONS = {"UnaryBitwiseNotExpression": "~", "UnaryLogicalNotExpression": "!",
 REDUCTIONS = {"UnaryBitwiseAndExpression": ("&", "|"), "UnaryBitwiseOrExpression": ("|", "&"),
               "UnaryBitwiseXorExpression": ("^", "|")}
 
-# What is changed in the value of a named constant.
-LOWEST_BIT = "1'b1"
-REGISTER_BYTES = "12'd4"
-
 LITERAL = re.compile(r"(\d+)\s*'\s*([sS]?)([bBdDhHoO])\s*([0-9a-fA-F_]+)$")
+LOWEST_BIT = "1'b1"
+BYTES_OF_A_REGISTER = "12'd4"
 BASES = {"b": 2, "o": 8, "d": 10, "h": 16}
 FORMATS = {"b": "b", "o": "o", "d": "d", "h": "X"}
 
@@ -111,6 +109,13 @@ def literal(text: str) -> List[Alternative]:
     return [Alternative("constant", f"{width}'{sign}{base}{other:{FORMATS[base]}}") for other in others]
 
 
+def constant(text: str) -> Alternative:
+    """A named constant, or bits of one: the lowest bit that has an effect. The two lowest bits of a register's byte
+    address select nothing, because registers are words."""
+    is_address = re.fullmatch(r"(\w+::)?ADDR_\w+", text)
+    return Alternative("constant", f"({text} ^ {BYTES_OF_A_REGISTER if is_address else LOWEST_BIT})")
+
+
 def name(text: str, names: Names, is_value: bool) -> List[Alternative]:
     """A plain name. A name used as a value (`is_value`) is inverted, unless an operator around it has that mutant
     already."""
@@ -118,9 +123,7 @@ def name(text: str, names: Names, is_value: bool) -> List[Alternative]:
         all_of_it = names.members[text]
         return [Alternative("constant", all_of_it[(all_of_it.index(text) + 1) % len(all_of_it)])]
     if text in names.constants:
-        # Registers are words: the two lowest bits of a register's byte address select nothing.
-        is_address = text.rpartition("::")[2].startswith("ADDR_")
-        return [Alternative("constant", f"({text} ^ {REGISTER_BYTES if is_address else LOWEST_BIT})")]
+        return [constant(text)]
     if is_value and text not in names.enumerated:
         return [Alternative("inverted", f"~{text}")]
     return []
@@ -130,7 +133,7 @@ def select(node, names: Names, text_of, is_value: bool) -> List[Alternative]:
     """A bit-select or part-select: its neighbours."""
     identifier, text = node.identifier.valueText, text_of(node)
     if identifier in names.constants:
-        return [Alternative("constant", f"({text} ^ {LOWEST_BIT})")]
+        return [constant(text)]
     result = [Alternative("inverted", f"~{text}")] if is_value else []
     selectors = list(node.selectors)
     if len(selectors) == 1 and identifier in names.top_bit:

@@ -254,6 +254,8 @@ class Instrument(unittest.TestCase):
         self.assertEqual(self.texts("x = N + ADDR_TIME;", "localparam N = 2, ADDR_TIME = 12'h40;"),
                          {"", "x = N - ADDR_TIME", "x = N", "x = ADDR_TIME", "x = (N ^ 1'b1) + ADDR_TIME",
                           "x = N + (ADDR_TIME ^ 12'd4)"})
+        self.assertEqual(self.texts("x = p::ADDR_TIME;"), {"", "x = (p::ADDR_TIME ^ 12'd4)"})
+        self.assertEqual(self.texts("x = p::ADDR_TIME[11:2];"), {"", "x = (p::ADDR_TIME[11:2] ^ 1'b1)"})
 
     def test_constants_of_the_build_stay(self):
         self.assertEqual(self.texts("x = {2{a}};"), {"", "x = {2{~a}}"})
