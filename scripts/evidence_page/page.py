@@ -9,12 +9,12 @@ from evidence_page import charts, tables
 STYLE = """
 :root { color-scheme: light dark; --line: #8886; }
 body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 76rem; padding: 0 1rem; }
-table { border-collapse: collapse; display: block; margin: 1rem 0 2rem; overflow-x: auto; }
+table { border-collapse: collapse; display: block; font-size: 13px; margin: 1rem 0 2rem; overflow-x: auto; }
 caption { font-weight: 600; padding: .4rem 0; text-align: left; }
-th, td { border-bottom: 1px solid var(--line); padding: .2rem .6rem; text-align: left; vertical-align: top; }
-code { font-size: 13px; } td:first-child code { white-space: nowrap; }
-.good, .bad, .none { white-space: nowrap; } .good { color: #18794e; font-weight: 600; } .bad { color: #c62828; font-weight: 700; } .none { color: #9a6700; }
-@media (prefers-color-scheme: dark) { .good { color: #4cc38a; } .bad { color: #ff6369; } .none { color: #f1a10d; } }
+th, td { border-bottom: 1px solid var(--line); padding: .2rem .45rem; text-align: left; vertical-align: top; }
+code { font-size: 12px; } td:first-child code { white-space: nowrap; }
+.good, .bad, .none { white-space: nowrap; } .good { color: #18794e; font-weight: 600; } .bad, .bad a { color: #c62828; font-weight: 700; } .none, .none a { color: #9a6700; }
+@media (prefers-color-scheme: dark) { .good { color: #4cc38a; } .bad, .bad a { color: #ff6369; } .none, .none a { color: #f1a10d; } }
 .sums { display: flex; flex-wrap: wrap; gap: .6rem 2rem; padding: 0; } .sums li { list-style: none; } .sums b { display: block; font-size: 1.5rem; }
 """
 

@@ -68,9 +68,9 @@ def modules(data: dict) -> str:
     for row in data["modules"]:
         rows.append([link(f"rtl/{row['file']}", row["module"]), code(row["lockstep"]), compared(data["clocks"], row["lockstep"]),
                      number(row["seeded_bugs"]),
-                     proved(data["proofs"], row["proof"]), killed(data["mutants"], row), number(row["listed"]),
+                     proved(data["proofs"], row), killed(data["mutants"], row), number(row["listed"]),
                      *(covered(data["coverage"], row["module"], kind) for kind in KINDS)])
-    return table(["module", "smallest lockstep", "clocks compared in it", "seeded bugs", "proof, and its runs as expected", "mutants killed", "listed as equivalent",
+    return table(["module", "smallest lockstep", "clocks compared in it", "seeded bugs", "proof: runs as expected", "mutants killed", "listed as equivalent",
                   *(f"{kind} points covered" for kind in KINDS)], rows, "Modules of the RTL")
 
 
@@ -78,16 +78,17 @@ def compared(clocks: dict, lockstep: str) -> str:
     return number(clocks[lockstep]) if lockstep in clocks else '<span class="none">not recorded</span>'
 
 
-def proved(proofs: dict, name: str | None) -> str:
-    """A proof with its covers and seeded bugs; a module that only connects others has none."""
+def proved(proofs: dict, row: dict) -> str:
+    """A proof with its covers and seeded bugs, named if it is not the module's own; a module that only connects others
+    has none."""
+    name = row["proof"]
     if not name:
         return '<span class="none">none</span>'
     figure = proofs.get(name)
-    if not figure:
-        return f'{link(f"verif/formal/{name}.properties", name)}, <span class="none">not recorded</span>'
-    text = f"{figure['as_expected']} of {figure['runs']}"
-    verdict = text if figure["as_expected"] == figure["runs"] else f'<span class="bad">{text}</span>'
-    return f'{link(f"verif/formal/{name}.properties", name)}, {verdict}'
+    text = f"{figure['as_expected']} of {figure['runs']}" if figure else "not recorded"
+    verdict = "none" if not figure else "plain" if figure["as_expected"] == figure["runs"] else "bad"
+    named = "" if name == row["module"] else f"{name}: "
+    return f'<span class="{verdict}">{link(f"verif/formal/{name}.properties", named + text)}</span>'
 
 
 def killed(mutants: dict, row: dict) -> str:
