@@ -31,7 +31,7 @@ module time_part #(
     input wire logic latched_i,  // latch of the emergency stop (asynchronous)
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
     input wire logic [axis_observe_pkg::WIDTH*Axes-1:0] axes_i,
-    input wire logic path_active_i,
+    input wire logic path_active_i,  // also throughout a direct move
     input wire logic direct_active_i,
     input wire logic abort_i,  // event
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
@@ -109,7 +109,7 @@ module time_part #(
         .roles_i,
         .step_i(step),
         .dir_i(dir),
-        .runs_i(path_active_i || direct_active_i),
+        .runs_i(path_active_i),
         .probing_i(path_i[path_pkg::PROBING]),
         .stopping_i(stopping),
         .clear_i(clear_fault_i),
@@ -159,7 +159,7 @@ module time_part #(
       .clk_i,
       .rst_i,
       .setting_i,
-      .moves_i(path_i[path_pkg::TAKING] || direct_active_i),
+      .moves_i(path_i[path_pkg::TAKING]),
       .busy_i,
       .emergency_i(emergency_stop_i),
       .fault_i(time_state_o[time_state_pkg::FAULT+:32]),

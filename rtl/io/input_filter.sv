@@ -27,11 +27,9 @@ module input_filter #(
   logic        clearing_q;
   logic [15:0] length_read_q;
   logic [15:0] count_read_q;
-  logic [15:0] count_q;  // scans for which the input has differed from its output, or agreed with it
-  logic [15:0] next_q;  // count_q + 1
+  logic [15:0] next_q;  // scans for which the input has differed from its output, or agreed with it, and this one
   // Comparisons made one clock before the decision, so that only these flags lie between the levels and the decision.
   logic        none_q;  // the length is 0
-  logic        kept_lasts_q;  // count_q has reached the length
   logic        next_lasts_q;  // next_q has reached the length
   logic [31:0] differs;  // inputs that differ from their outputs now
   logic [31:0] differed_q;  // inputs that have differed in every clock since their last scan
@@ -46,7 +44,6 @@ module input_filter #(
   assign scanned = late_q[5:1];
 
   logic [31:0] agreed_q;  // inputs that have agreed in every clock since their last scan
-  logic [31:0] quiet_q;
   logic        steady;
   logic        lasts;
   logic        passes;
@@ -55,10 +52,11 @@ module input_filter #(
 
   always_comb begin
     differs = 32'(levels_i) ^ 32'(levels_o);
-    // The count cannot overflow: at the greatest length, at the latest, the input passes or is quiet.
+    // At the greatest length, at the latest, the input passes or is quiet. While it is quiet, its count may wrap, because
+    // nothing depends on it before the input differs and the count starts again.
     steady  = differs[scanned] ? differed_q[scanned] : agreed_q[scanned];
-    count   = !steady ? 16'd0 : quiet_q[scanned] ? count_q : next_q;
-    lasts   = decides && (clearing_q || (!steady ? none_q : quiet_q[scanned] ? kept_lasts_q : next_lasts_q));
+    count   = steady ? next_q : 16'd0;
+    lasts   = decides && (clearing_q || (steady ? next_lasts_q : none_q));
     passes  = lasts && differs[scanned];
     changes = passes ? 32'd1 << scanned : 32'd0;
   end
@@ -87,18 +85,16 @@ module input_filter #(
 
     always_ff @(posedge clk_i) begin
       agreed_q <= (~differs | changes) & (agreed_q | looked_at);
-      quiet_q  <= (quiet_q & ~differs) | changes | (lasts && steady ? ~differs & looked_at : 32'd0);
+      quiet_o  <= Inputs'((32'(quiet_o) & ~differs) | changes | (lasts && steady ? ~differs & looked_at : 32'd0));
       if (rst_i) begin
         agreed_q <= '0;
-        quiet_q  <= '0;
+        quiet_o  <= '0;
       end
     end
   end else begin : gen_no_quiet
     assign agreed_q = '0;
-    assign quiet_q  = '0;
+    assign quiet_o  = '0;
   end
-
-  assign quiet_o = quiet_q[Inputs-1:0];
 
   logic [15:0] lengths[0:31];
   logic [15:0] counts [0:31];
@@ -112,10 +108,8 @@ module input_filter #(
   always_ff @(posedge clk_i) begin
     if (decides) counts[scanned] <= count;
     count_read_q <= counts[reads];
-    count_q <= count_read_q;
     next_q <= count_read_q + 16'd1;
     none_q <= length_read_q == 16'd0;
-    kept_lasts_q <= count_read_q >= length_read_q;
     next_lasts_q <= count_read_q + 16'd1 >= length_read_q;
   end
 endmodule

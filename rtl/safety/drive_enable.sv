@@ -74,7 +74,7 @@ module drive_enable #(
   assign rests = !moves_i && !busy_i;
   assign axes_d = rests ? named_q : axes_q;
   assign used = axes_q != '0;
-  assign barred = emergency_i || (fault_i[Faults-1:0] & causes_q) != '0;
+  assign barred = (fault_i[Faults-1:0] & causes_q) != '0;
   assign wanted = used && !barred && (on_q || (moves_i && !manual_q));
   // One subtraction: its borrow is the comparison with 0.
   assign {none_left, next_left} = {1'b0, left_q} - 1'b1;

@@ -17,7 +17,7 @@ module limit_axis #(
     input wire logic shared_i,
     input wire logic any_step_i,  // each step, in either direction, counts as a step into a limit while any_limit_i
     input wire logic any_limit_i,
-    input wire logic any_into_i,  // event: some axis with any_step_i makes such a step
+    input wire logic any_into_i,  // event: some axis with any_step_i makes a step
     input wire logic ramp_i,  // the stop is under way: overtravel counts
     input wire logic clear_i,  // event: FAULT.limit is cleared
     output logic [1:0] active_o,  // combinational; without overridden limits

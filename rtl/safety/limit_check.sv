@@ -49,7 +49,7 @@ module limit_check #(
   assign limit_plus = input_roles_pkg::limit_plus(roles_i);
   assign drives = roles_i[input_roles_pkg::DRIVE_FAULT+:Axes];
   assign any_limit = (limited & any_step_q) != '0;
-  assign any_into = any_limit && (step_i & any_step_q) != '0;
+  assign any_into = (step_i & any_step_q) != '0;
   assign causes_o[stop_causes_pkg::LIMIT] = into != '0;
   assign causes_o[stop_causes_pkg::BEYOND] = beyond != '0;
   assign causes_o[stop_causes_pkg::DRIVE_FAULT] = drives_q != '0;
