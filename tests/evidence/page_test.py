@@ -1,7 +1,7 @@
 """The evidence page: how it must show the records of runs. Seen to fail: with mark() always "good", with a release
 order by text, with a foreign judge that passes without a run, with cells that are not escaped, with missing points that
 are not red, with two ways of cutting the mutants added up, with the older record of a proof, with survivors that are
-not red, with no missing runs."""
+not red, with no missing runs, without the links of a table."""
 import json
 import pathlib
 import sys
@@ -120,6 +120,16 @@ class Page(unittest.TestCase):
         newer = run("part-proofs", proofs={module["proof"]: {"runs": 8, "as_expected": 7}})
         self.assertRegex(self.cell(self.data(v1_0_0=[newer, older]), module["module"], 4), '<span class="bad"><a [^>]*>7 of 8</a></span>')
         self.assertIn("not recorded", self.cell(self.data(v1_0_0=[run("part-unit")]), module["module"], 4))
+
+    def test_each_table_links_to_its_raw_files(self):
+        data = gather()
+        site = self.path / "site"
+        page.write(site, data)
+        text = (site / "index.html").read_text()
+        self.assertEqual(text.count("<table"), text.count('<p class="raw">'))
+        for name in ("modules.json", f"{data['release']}.json", "hx8k.json", "boards.json", "peers.toml"):
+            self.assertIn(f'href="raw/{name}"', text)
+            self.assertTrue((site / "raw" / name).read_bytes())
 
     def test_runs_that_are_missing_are_named(self):
         data = self.data(v1_0_0=[run("tests"), run("part-mutation-3")])
