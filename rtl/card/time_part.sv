@@ -159,7 +159,7 @@ module time_part #(
       .clk_i,
       .rst_i,
       .setting_i,
-      .moves_i(path_i[path_pkg::TAKING]),
+      .moves_i(path_i[path_pkg::TAKING]),  // also throughout a direct move
       .busy_i,
       .emergency_i(emergency_stop_i),
       .fault_i(time_state_o[time_state_pkg::FAULT+:32]),

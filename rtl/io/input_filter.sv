@@ -27,7 +27,7 @@ module input_filter #(
   logic        clearing_q;
   logic [15:0] length_read_q;
   logic [15:0] count_read_q;
-  logic [15:0] next_q;  // scans for which the input has differed from its output, or agreed with it, and this one
+  logic [15:0] next_q;  // scans for which the input has differed from its output, or agreed with it, up to this one
   // Comparisons made one clock before the decision, so that only these flags lie between the levels and the decision.
   logic        none_q;  // the length is 0
   logic        next_lasts_q;  // next_q has reached the length

@@ -43,6 +43,7 @@ module link_watch (
   ) == card_map_pkg::ADDR_STREAM[11:2]);
   assign at_port = register_access_pkg::port(access_i) == writer_q && access_i[register_access_pkg::OF_SESSION];
   assign begins = at_port && access_i[register_access_pkg::NEW_SESSION];
+  // Nothing is watched before the first session that writes, so it need not be asked for here.
   assign feeds = claims || (accepted && at_port && !begins && !gone_o);
   assign data = setting_bus_pkg::data(setting_i);
   assign time_set = data[15:0];

@@ -74,6 +74,7 @@ module drive_enable #(
   assign rests = !moves_i && !busy_i;
   assign axes_d = rests ? named_q : axes_q;
   assign used = axes_q != '0;
+  // The emergency stop is not part of it: it forces OFF whatever the state.
   assign barred = (fault_i[Faults-1:0] & causes_q) != '0;
   assign wanted = used && !barred && (on_q || (moves_i && !manual_q));
   // One subtraction: its borrow is the comparison with 0.

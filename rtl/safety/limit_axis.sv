@@ -17,7 +17,7 @@ module limit_axis #(
     input wire logic shared_i,
     input wire logic any_step_i,  // each step, in either direction, counts as a step into a limit while any_limit_i
     input wire logic any_limit_i,
-    input wire logic any_into_i,  // event: some axis with any_step_i makes a step
+    input wire logic watched_step_i,  // event: an axis with any_step_i makes a step
     input wire logic ramp_i,  // the stop is under way: overtravel counts
     input wire logic clear_i,  // event: FAULT.limit is cleared
     output logic [1:0] active_o,  // combinational; without overridden limits
@@ -58,7 +58,7 @@ module limit_axis #(
   assign blocked = any_step_i ? {2{any_limit_i}} : shared_i ? active_o & reached : active_o;
   assign into = step_i && (blocked & side) != 2'b00;
   // An axis with any_step_i names its own active limits, whichever axis made the step.
-  assign caused = any_step_i ? (any_into_i ? active_o : 2'b00) : into ? side : 2'b00;
+  assign caused = any_step_i ? (watched_step_i ? active_o : 2'b00) : into ? side : 2'b00;
   // The overtravel counts from the first step into a limit on.
   assign left = ramp_i ? left_q : overtravel_q;
   // One subtraction: its borrow is the comparison with 0. It does not depend on whether the step counts.

@@ -38,7 +38,7 @@ module limit_check #(
   logic [Axes-1:0] into;
   logic [Axes-1:0] beyond;
   logic            any_limit;
-  logic            any_into;
+  logic            watched_step;
   logic [Axes-1:0] minus;  // axes whose negative limit caused FAULT.limit
   logic [Axes-1:0] plus;  // axes whose positive limit caused FAULT.limit
 
@@ -49,7 +49,7 @@ module limit_check #(
   assign limit_plus = input_roles_pkg::limit_plus(roles_i);
   assign drives = roles_i[input_roles_pkg::DRIVE_FAULT+:Axes];
   assign any_limit = (limited & any_step_q) != '0;
-  assign any_into = (step_i & any_step_q) != '0;
+  assign watched_step = (step_i & any_step_q) != '0;
   assign causes_o[stop_causes_pkg::LIMIT] = into != '0;
   assign causes_o[stop_causes_pkg::BEYOND] = beyond != '0;
   assign causes_o[stop_causes_pkg::DRIVE_FAULT] = drives_q != '0;
@@ -76,7 +76,7 @@ module limit_check #(
         .shared_i(shared_q[n]),
         .any_step_i(any_step_q[n]),
         .any_limit_i(any_limit),
-        .any_into_i(any_into),
+        .watched_step_i(watched_step),
         .ramp_i(ramp),
         .clear_i(clears_limit),
         .active_o(active),
