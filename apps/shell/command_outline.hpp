@@ -13,7 +13,7 @@ struct OptionOutline {
   bool positional = false;
   bool takes_value = false;
   bool repeatable = false;
-  std::string value;                 // placeholder in a help text, such as FILE
+  std::string value;                 // what a help text calls the value, such as FILE
   std::vector<std::string> choices;  // empty: not a choice
   std::string default_value;
   std::string about;

@@ -7,7 +7,7 @@ from typing import Dict, Iterable, List, Tuple
 
 from records import record
 
-WORK = "{work}"  # in a command: placeholder for the job's own folder
+WORK = "{work}"  # stands in a command for the folder of its job
 SHORTEST, LONGEST = 20, 15 * 60  # seconds: a shorter job costs too much to start; a longer one delays the others
 GUESS = 120  # seconds, for jobs that were never measured
 
