@@ -99,11 +99,14 @@ class MotionCorePair {
     geometry_.reset();
     feed_.reset();
     starting_ = false;
+    reset_at_ = check_.cycles();
     marks_ahead_ = 0;
     places_ = 0;
     chain_.fill({});
     compare();
   }
+
+  std::uint64_t since_reset() const { return check_.cycles() - reset_at_; }
 
   // One clock with the inputs `in_`; the queues and their writers add theirs.
   void clock() {
@@ -366,7 +369,8 @@ class MotionCorePair {
   std::array<SnapshotWord, 4 + kAxes> chain_;
   std::uint32_t idle_level_ = 0;
   std::uint16_t output_idle_ = 0;
-  bool starting_ = false;  // START is not answered yet
+  bool starting_ = false;       // START is not answered yet
+  std::uint64_t reset_at_ = 0;  // clock of the last reset
   std::uint8_t start_mask_ = 0;
   std::uint32_t marks_ahead_ = 0;  // MARKs that the RTL counts more than the model
   std::uint8_t places_ = 0;        // axes with a valid place, one clock ago

@@ -25,6 +25,7 @@ void random_programs() {
   if (kStreaming) bench.streaming_set_around_the_begin();
   if (kClasses) bench.holds_before_the_path();
   if (kEnables) bench.drives_disabled_in_motion();
+  if (kEnables && kDirectMode) bench.direct_move_waits_for_drives();
   if (kEnables && kPwm) bench.pulses_while_drives_wait();
   // The directed scenarios above make most of the steps of a short run, and do not grow in a long one.
   const std::uint64_t directed_clocks = bench.check().cycles();
@@ -34,7 +35,7 @@ void random_programs() {
   }
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
-  EXPECT_GT(bench.counts().steps - directed_steps, (length - directed_clocks) / 1000);
+  EXPECT_GT(bench.counts().steps - directed_steps, (length - directed_clocks) / 500);
   if (kDirectMode) {
     EXPECT_GT(bench.counts().moves, length / 20'000);
   }

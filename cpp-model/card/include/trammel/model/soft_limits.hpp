@@ -5,7 +5,8 @@
 // Each clock looks at one axis, in rounds of 4, or of 8 with more than 4 axes. The end on the side of the axis's last
 // pulse was read one clock before; if the axis has turned since, it waits for the next round. If an axis that is
 // looked at in clock c has made a pulse since the previous look, and is beyond that end, it is a cause at c+2 and in
-// FAULT and LIMIT_STATE at c+3. Not thread-safe; no errors are reported.
+// FAULT and LIMIT_STATE at c+3. Not thread-safe; no errors are reported. Settings in the first 16 clocks after a reset
+// are taken here and lost in the RTL; the card has no access that early.
 #pragma once
 
 #include <array>
