@@ -7,9 +7,6 @@
 //
 // Positions count modulo 2^32, and so does the difference to an end. The comparison is right while the axis is less
 // than 2^31 pulses away from that end.
-//
-// A setting is lost in the first 16 clocks after a reset, in which the ends are cleared. The card's registers take
-// longer to fill, and no access is answered before.
 `default_nettype none
 
 module soft_limits #(
