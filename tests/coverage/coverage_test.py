@@ -175,6 +175,13 @@ class Verdict(InAProject):
                  for file in ("boards/sim/SB_IO.sv", "verif/lockstep/axis/timers.sv", "rtl/io/io_pkg.sv")]
         self.assertEqual(self.coverage(WHOLE + "".join(other)), 0)
 
+    def test_toggles_count_but_for_the_clock_and_what_a_module_does_not_read(self):
+        never = [entry(2, 17, "toggle", what, 0) for what in ("clk_i", "unused", "unused[3]")]
+        self.assertEqual(self.coverage(WHOLE + "".join(never)), 0)
+        for missing in ("q_o", "q_o[3]", "clk_io", "unused_o"):
+            self.assertEqual(self.coverage(WHOLE + entry(3, 18, "toggle", missing, 0)), 1)
+            self.assertIn(f"rtl/io/counter.sv:3: toggle {missing}: output logic q_o", self.said)
+
 
 class Runs(InAProject):
     def lockstep(self, script):
