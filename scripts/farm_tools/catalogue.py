@@ -16,7 +16,7 @@ LISTS = (tested.builds, hardware.tools, tested.locksteps, hardware.mutations, ha
 
 def samples() -> List[Job]:
     """One or two short jobs of every kind, with the builds that they need: a sample of the long ones."""
-    long_builds = ("build-mutation", "build-dev", "build-coverage")
+    long_builds = ("build-mutation", "build-dev", "build-coverage", "build-coverage-toggle")
     jobs = [job for job in (*tested.builds(), *hardware.tools()) if job.id not in long_builds]
     blocks = "^lockstep[.](feed_generator|arc_generator|motion_core_4)[.].*Random"
     jobs += [tested.ctest("quick-lockstep", "lockstep", "release", "-R", blocks, inputs=tested.LOCKSTEP, TRAMMEL_SEED="7",

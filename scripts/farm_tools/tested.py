@@ -64,7 +64,9 @@ def builds() -> List[Job]:
             made("coverage-sample", ("build-release",), ("build/rtl-coverage/bin/lockstep_time_base",), 120,
                  ("coverage", "--only", COVERAGE_SAMPLE)),
             made("coverage", ("build-coverage-sample",),
-                 ("build/rtl-coverage/bin/lockstep_motion_core_8", "build/coverage/bin/test_planner"), 3600)]
+                 ("build/rtl-coverage/bin/lockstep_motion_core_8", "build/coverage/bin/test_planner"), 3600),
+            made("coverage-toggle", ("build-coverage",), ("build/rtl-coverage-toggle/bin/lockstep_motion_core_8",), 5400,
+                 ("coverage", "--toggle"))]
 
 
 def locksteps() -> List[Job]:
@@ -123,7 +125,8 @@ def coverage_sample() -> Job:
 
 
 def coverages() -> List[Job]:
-    return [coverage("coverage-rtl", "rtl/coverage.json"), coverage("coverage-cpp", "cpp/coverage.json", "--cpp")]
+    return [coverage("coverage-rtl", "rtl/coverage.json"), coverage("coverage-cpp", "cpp/coverage.json", "--cpp"),
+            coverage("coverage-toggle", "rtl-toggle/coverage.json", "--toggle", build="coverage-toggle")]
 
 
 def sanitizer(name: str, shard: int) -> Job:
