@@ -72,11 +72,6 @@ function(trammel_verilate target)
   if(TRAMMEL_RTL_COVERAGE AND A_LEVEL EQUAL 3)  # counters make the code twice as long, and the runs are short
     set(A_LEVEL 1)
   endif()
-  list(LENGTH A_SOURCES size)
-  # The compiler needs more than ten minutes for a card with toggle counters at -O1.
-  if("toggle" IN_LIST TRAMMEL_RTL_COVERAGE AND size GREATER 20)
-    set(A_LEVEL 0)
-  endif()
   set(files "")
   foreach(file IN LISTS TRAMMEL_RTL_PACKAGES A_SOURCES)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${TRAMMEL_RTL_DIR}" NORMALIZE)
