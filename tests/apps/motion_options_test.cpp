@@ -77,6 +77,16 @@ std::vector<double> ten_moments(unsigned seed, double seconds) {
   return result;
 }
 
+// 8 directions stay within half a pulse of the circle, 4 within one.
+TEST_F(Operator, TheAccumulatorMakesArcsIn8DirectionsOnlyIfAsked) {
+  const std::string program = command_.write("circle.ngc", "F1200\nG2 X0 Y0 I5\nM2\n");
+  const auto deviation = [&](const std::string& arcs) {
+    return run(program, "--arcs " + arcs).json["max_deviation"]["arc"].get<double>();
+  };
+  EXPECT_GT(deviation("accumulator"), 0.9);
+  EXPECT_LT(deviation("accumulator-8"), 0.51);
+}
+
 TEST_F(Operator, NothingThatHappensInTimeMovesThePath) {
   const std::string program = command_.write("a.ngc", kProgram);
   const Made plain = run(program, "");

@@ -122,6 +122,29 @@ TEST_F(PathIo, OutputsChangeAtTheirPlaceOnThePathWithoutAStop) {
   EXPECT_NE(summary_.find("no output for it in [spindle] of the machine file: S (1)\n"), std::string::npos) << summary_;
 }
 
+// S of [spindle] on the card that the command simulates: 500 of 1000 is half of each period, 1000 the whole.
+TEST_F(PathIo, TheSpindlesPulsesFollowS) {
+  const std::string program = command_.write("a.ngc", "F1200\nM3 S500\nG1 X10\nS1000\nX20\nM5\nX30\n");
+  const nlohmann::json with = run(program, "--set spindle.output=2");
+  ASSERT_GT(changes_.size(), 900U);
+  std::uint64_t high[2] = {0, 0};  // clocks, in the two parts of the path
+  std::uint64_t clocks[2] = {0, 0};
+  for (std::size_t i = 0; i + 1 < changes_.size(); ++i) {
+    ASSERT_EQ(changes_[i].output, 2U);
+    const std::uint64_t time = changes_[i + 1].cycle - changes_[i].cycle;
+    const std::size_t part = i + 2 < changes_.size() ? 0 : 1;  // at full width the output does not change
+    clocks[part] += time;
+    if (changes_[i].level != 0) high[part] += time;
+  }
+  EXPECT_NEAR(static_cast<double>(high[0]) / static_cast<double>(clocks[0]), 0.5, 0.002);
+  EXPECT_EQ(high[1], clocks[1]);
+  EXPECT_NEAR(static_cast<double>(clocks[1]), 0.5 * kClock, 0.03 * kClock) << "10 mm at 20 mm/s";
+  EXPECT_EQ(changes_.back().level, 0) << "M5";
+  EXPECT_EQ(with["outputs"][0]["words"], nlohmann::json({"S"}));
+  EXPECT_NE(summary_.find("output 2 (S): switched on "), std::string::npos) << summary_;
+  EXPECT_EQ(summary_.find("no output for it"), std::string::npos) << summary_;
+}
+
 TEST_F(PathIo, AStartInTheMiddleRestoresOutputs) {
   const std::string program = command_.write("a.ngc", "F1200\nM3\nG1 X10\nM8\nX20\nM9\nX30\n");
   run(program, std::string(kOutputs) + " --from-line 5");

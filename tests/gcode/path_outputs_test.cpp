@@ -71,6 +71,8 @@ TEST(PathOutputs, WordsWithoutAnOutputAreToldAsBefore) {
   EXPECT_EQ(spindle.accepted, (Words{{"S", 1}, {"M4", 1}, {"M7", 1}, {"M8", 1}, {"M9", 1}}))
       << "M4 has none of its own";
   EXPECT_EQ(order_of(spindle.motions), (Order{"1:+2-0", "3:+0-2", "5:+0-2", "7:+0-2", "7:end"})) << "M4 ends M3";
+  machine::apply_override(machine, "spindle.output=0");
+  EXPECT_EQ(read_text(program, machine).accepted, (Words{{"M7", 1}, {"M8", 1}, {"M9", 1}})) << "S sets the pulse width";
 }
 
 machine::Machine machine_with_numbered_outputs() {

@@ -20,7 +20,9 @@ namespace reg = card_map::reg;
 // A card with a host; `skips` selects how it spends idle time.
 class Card {
  public:
-  explicit Card(bool skips) : skips_(skips), model_(CardModel::Config{}) { model_.set_steps(&steps); }
+  explicit Card(bool skips, const CardModel::Config& config = {}) : skips_(skips), model_(config) {
+    model_.set_steps(&steps);
+  }
 
   void write(std::uint32_t address, std::uint32_t value) {
     CardModel::Inputs in;
@@ -96,6 +98,32 @@ void wait_in_pieces(Pair& pair, std::mt19937_64& random, std::uint64_t clocks) {
     pair.both([piece](Card& card) { card.wait(piece); });
     if (::testing::Test::HasFatalFailure()) return;
     clocks -= piece;
+  }
+}
+
+// Steps name the command of their path. Commands that take no time are commands of the stream, too, but the card does
+// not count them as begun.
+TEST(CardModelRun, StepsNameTheirCommandBehindCommandsThatTakeNoTime) {
+  const driver::Command instant[] = {driver::OutputCommand{1, 0}, driver::MarkCommand{},
+                                     driver::PwmCommand{0, 1000, false, 0, 0}};
+  for (std::size_t i = 0; i < std::size(instant); ++i) {
+    SCOPED_TRACE(i);
+    CardModel::Config config;
+    config.engines |= card_map::engines::kPathCommands | card_map::engines::kPwm;
+    Card card(false, config);
+    card.send(line(40, 4, 0));
+    card.send(instant[i]);
+    card.send(instant[i]);
+    card.send(line(40, 4, 0));
+    driver::FeedCommand piece;
+    piece.ticks = 80;
+    piece.rate = std::uint64_t{1} << 60;
+    card.send(piece);
+    card.send(driver::EndCommand{});
+    card.wait(20'000);
+    std::vector<std::uint64_t> commands;
+    for (const auto& step : card.steps.path) commands.push_back(std::get<0>(step));
+    EXPECT_EQ(commands, (std::vector<std::uint64_t>{0, 0, 0, 0, 3, 3, 3, 3}));
   }
 }
 

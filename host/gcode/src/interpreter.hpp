@@ -54,6 +54,8 @@ class Interpreter final : public Predefined {
   void end(std::size_t line, LineMotions& motions);
   // Whether a word of the groups spindle, coolant or numbered outputs switches an output of this machine.
   bool switches(int number) const;
+  // Whether the spindle speed sets the pulse width of an output of this machine.
+  bool sets_pulse_width() const { return machine_.outputs.pwm != 0; }
 
   // The end of the last probe, machine coordinates: `edge`, where the input changed, and `rest`, where the machine is.
   void probed(const Coordinates& edge, const Coordinates& rest, bool tripped);

@@ -223,7 +223,7 @@ class Reader::Impl {
 
   void count_accepted() {
     for (const WordSet::Accepted* word = words_.accepted_begin(); word != words_.accepted_end(); ++word) {
-      if (word->letter == 'S' && words_.dwells_by_s()) continue;
+      if (word->letter == 'S' && (words_.dwells_by_s() || interpreter_.sets_pulse_width())) continue;
       if (word->letter == 'M' && interpreter_.switches(word->number)) {
         continue;
       }

@@ -27,6 +27,7 @@ std::vector<OutputResult> outputs_of(const machine::MachineOutputs& named, const
     word("M4", named.m4);
     word("M7", named.m7);
     word("M8", named.m8);
+    word("S", named.pwm);
     for (std::size_t p = 0; p < named.numbered.size(); ++p) word(fmt::format("M62 P{}", p), named.numbered[p]);
     if (!output.words.empty()) result.push_back(output);
   }

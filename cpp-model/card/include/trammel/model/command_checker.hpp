@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "trammel/card_map.hpp"
+#include "trammel/model/opcodes.hpp"
 #include "trammel/model/wide.hpp"
 
 namespace trammel::model {
@@ -67,12 +68,7 @@ class CommandChecker {
   State& state() { return state_; }
 
   // True if a command is committed that the sequencer counts: a path or a barrier.
-  bool counts_in_geometry() const {
-    using card_map::Opcode;
-    const Opcode opcode = state_.command->opcode;
-    const bool instant = opcode == Opcode::Output || opcode == Opcode::Mark || opcode == Opcode::Probe;
-    return state_.outputs.geometry_commit && !instant;
-  }
+  bool counts_in_geometry() const { return state_.outputs.geometry_commit && !is_instant(state_.command->opcode); }
 
  private:
   void restart();

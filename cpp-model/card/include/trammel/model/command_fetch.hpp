@@ -15,6 +15,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/model/opcodes.hpp"
 
 namespace trammel::model {
 
@@ -71,7 +72,7 @@ class CommandFetch {
   bool is_probe() const { return state_.opcode == card_map::Opcode::Probe; }
   bool is_wait() const { return state_.opcode == card_map::Opcode::WaitInput; }
   bool is_probe_end() const { return state_.opcode == card_map::Opcode::ProbeEnd; }
-  bool is_instant() const { return is_output() || is_mark() || is_pwm() || is_probe(); }  // neither path nor barrier
+  bool is_instant() const { return model::is_instant(state_.opcode); }
   bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
   std::uint8_t engine() const { return state_.engine; }  // the engine of a path, as card_map::engine
   std::uint8_t mask() const { return state_.mask; }
