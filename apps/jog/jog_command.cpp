@@ -95,8 +95,9 @@ void move_by(run::Jog& jog, const run::MachinePosition& position, const machine:
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const double pulse = 1 / machine.axes[axis].steps_per_mm;
     if (std::abs(at[axis] - from[axis] - distance[axis]) <= pulse) continue;
-    tell("note", fmt::format("{} moved by {:.4f} instead of {:.4f}, because a soft limit (min or max) is in the way",
-                             machine.axes[axis].letter, at[axis] - from[axis], distance[axis]));
+    tell("note",
+         fmt::format("{} moved by {:.4f} mm instead of {:.4f} mm, because a soft limit (min or max) is in the way",
+                     machine.axes[axis].letter, at[axis] - from[axis], distance[axis]));
   }
 }
 

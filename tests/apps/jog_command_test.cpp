@@ -53,8 +53,9 @@ TEST_F(JogCommand, EndsAtASoftLimitAndSaysSo) {
   ASSERT_EQ(command_.run("zero X Y Z E --homed --card " + server_.moving()).status, 0);
   const Outcome outcome = jog("X10 --set axis.x.max=4");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err,
-              HasSubstr("note: X moved by 4.0000 instead of 10.0000, because a soft limit (min or max) is in the way"));
+  EXPECT_THAT(
+      outcome.err,
+      HasSubstr("note: X moved by 4.0000 mm instead of 10.0000 mm, because a soft limit (min or max) is in the way"));
   const Outcome at_the_limit = jog("X10 --set axis.x.max=4");
   EXPECT_EQ(at_the_limit.status, 2);
   EXPECT_EQ(axis(0), 320);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """scripts/synthesise --record: which measurements of --check it writes to boards/results, and which it refuses. Seen to
-fail: with measurements of other or uncommitted RTL taken, with an older one preferred, with the other builds' records lost, with
-only one device written."""
+fail: with measurements of other or uncommitted RTL taken, with an older one preferred, with the other builds' records
+lost, with only one device written."""
 import importlib.util
 import json
 import pathlib

@@ -12,7 +12,6 @@ planner::CardLimits limits_of(const sim::EngineOptions& engine) {
   const std::unique_ptr<sim::Engine> model = sim::make_model_engine(engine);
   planner::CardLimits card = planner::limits_of(driver::Card::open(*model).identification());
   card.outputs = sim::kOutputs;
-  card.slew_shifts = false;  // holds take the whole slew at all speeds; see docs/developer/begun-work.md
   return card;
 }
 

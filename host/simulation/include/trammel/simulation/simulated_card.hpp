@@ -7,7 +7,7 @@
 namespace trammel::simulation {
 
 // The limits, for a planner, of the card that sim::make_engine() would make with these options: those that a card on a
-// link reports, and the number of outputs, but without slew shifts. Throws std::invalid_argument for options out of range.
+// link reports, and the number of outputs. Throws std::invalid_argument for options out of range.
 planner::CardLimits limits_of(const sim::EngineOptions& engine);
 
 // Axes of the smallest card that can be traced and has at least `axes` (1 to 8).
