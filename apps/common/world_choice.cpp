@@ -66,9 +66,6 @@ std::unique_ptr<world::World> WorldChoice::make(std::uint32_t clock_hz,
       description.events.insert(description.events.end(), more.begin(), more.end());
     }
     auto made = std::make_unique<world::World>(description, clock_hz);
-    if (made->wired() >> sim::kInputs != 0) {
-      throw UsageError(fmt::format("--world {}: the simulated card has inputs 0 to {}", *file, sim::kInputs - 1));
-    }
     refuse_wired_inputs(*made, inputs);
     return made;
   } catch (const world::WorldError& error) {

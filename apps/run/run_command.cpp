@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -272,8 +273,8 @@ simulation::RunOptions simulation_options(const RunArguments& options, const mac
 }
 
 // Notes for people before a long wait.
-void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double planned_seconds) {
-  if (const auto text = long_run_note(engine, planned_seconds)) tell("note", *text);
+void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double card_seconds) {
+  if (const auto text = long_run_note(engine, card_seconds)) tell("note", *text);
   if (engine.axes != axes) {
     tell("note", fmt::format("the trace shows a card with {} axes, because only cards with 4 or 8 axes can be traced",
                              engine.axes));
@@ -363,6 +364,21 @@ run::Outcome stream_to_simulation(const Simulation& of, const sim::SimulationOpt
   }
 }
 
+// Names the operator's events that the run's end came before.
+void tell_of_late_events(const std::vector<simulation::OperatorEvent>& events, const simulation::RunResult& result,
+                         double clock_hz) {
+  using Kind = simulation::OperatorEvent::Kind;
+  for (std::size_t n = result.events.size(); n < events.size(); ++n) {
+    const Kind kind = events[n].kind;
+    if (kind == Kind::kResume) continue;
+    tell("note", fmt::format("{} {:g} had no effect: the run ended after {:.3f} s of card time",
+                             kind == Kind::kHold       ? "--hold-at"
+                             : kind == Kind::kOverride ? "--override-at"
+                                                       : "--input-at",
+                             events[n].seconds, static_cast<double>(result.cycles) / clock_hz));
+  }
+}
+
 void write_results(const Simulation& of, PageListeners& listeners, const simulation::RunResult& result) {
   const RunArguments& options = of.options;
   SimulationFiles& files = of.files;
@@ -408,13 +424,18 @@ void run_in_simulation(const RunArguments& options) {
   files.all.open();
   if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
   warn(plan_warnings(plan));
-  tell_of_engine(engine, axes, plan.seconds);
+  const double bytes_per_second = settings.operation.bytes_per_second;
+  if (const auto text = slow_bus_note(bytes_per_second, plan.commands, plan.seconds)) tell("note", *text);
+  const double card_seconds = std::max(plan.seconds, bus_seconds(bytes_per_second, plan.commands));
+  tell_of_engine(engine, axes, card_seconds);
   run.make_card(engine);
   PageListeners listeners(files, run, world.get());
   const Simulation simulation{options, machine,     run::planned_profile(machine, settings.settings),
                               run,     world.get(), files};
-  const run::Outcome outcome = stream_to_simulation(simulation, engine, plan.seconds, listeners);
-  write_results(simulation, listeners, run.result(outcome));
+  const run::Outcome outcome = stream_to_simulation(simulation, engine, card_seconds, listeners);
+  const simulation::RunResult result = run.result(outcome);
+  tell_of_late_events(settings.operation.events, result, engine.clock_hz);
+  write_results(simulation, listeners, result);
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ bool CardServer::WorldClients::stays(Client& client) {
     // One request at a time: the next one waits for the answer.
     while (!client.request && !client.due && client.came.find('\n') != std::string::npos) take_line(client);
     return true;
-  } catch (const driver::LinkError&) {
+  } catch (const driver::LinkError& error) {
+    server_.settings_.note(fmt::format("client gone ({})", error.what()));
   } catch (const Unwanted& error) {
     server_.settings_.note(fmt::format("{} at the machine refused: {}", client.stream->peer(), error.what()));
   }

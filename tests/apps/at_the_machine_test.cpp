@@ -95,7 +95,8 @@ TEST_F(AtTheMachine, WhatIsNotThereIsRefusedByName) {
 TEST_F(AtTheMachine, AWaitEndsAndItsPressIsForgotten) {
   const Outcome waited = world("press estop --when 'X>5' --longest 0.3");
   EXPECT_EQ(waited.status, 1);
-  EXPECT_THAT(waited.err, HasSubstr("no answer in 0.3 s"));
+  EXPECT_THAT(waited.err, HasSubstr("nothing was done, because X > 5 did not come within 0.3 s"));
+  EXPECT_TRUE(eventually([&] { return server_.said("client gone"); })) << "the server sees that it has left";
   const Outcome moved = move("X10");
   EXPECT_EQ(moved.status, 0) << moved.err;
   EXPECT_TRUE(state()["pressed"].empty());

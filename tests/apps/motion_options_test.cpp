@@ -181,6 +181,33 @@ TEST_F(Operator, AHoldIsARampOnThePathAndItsTimeCountsFromTheRequest) {
       << "both slews at half the speed on the mean";
 }
 
+TEST_F(Operator, EventsAfterTheEndOfTheRunAreNamed) {
+  const std::string run_it = "run " + command_.write("a.ngc", "G1 X2 F1200\n") + " --engine model --clock 250000";
+  const Outcome outcome =
+      command_.run(run_it + " --hold-at 0.01:0.01 --override-at 50:80 --hold-at 60:1 --input-at 70:1:1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              testing::ContainsRegex("note: --override-at 50 had no effect: the run ended after 0[.][0-9]+ "
+                                     "s of card time\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("--hold-at 60 had no effect"));
+  EXPECT_THAT(outcome.err, HasSubstr("--input-at 70 had no effect"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("--hold-at 0.01")));
+}
+
+// The estimate of the card's time is right within half of it.
+TEST_F(Operator, ABusTooSlowForTheMotionIsNamedBeforeTheRun) {
+  const std::string run_it = "run " + command_.write("a.ngc", kProgram) + " --engine model --clock 250000";
+  EXPECT_EQ(command_.run(run_it + " --limit-bus 100000").err, "");
+  const Made late = run(command_.path("a.ngc"), "--limit-bus 10");
+  const std::string note = command_.run(run_it + " --limit-bus 10").err;
+  const std::size_t at = note.find(" commands take about ");
+  ASSERT_NE(at, std::string::npos) << note;
+  const double expected = std::stod(note.substr(at + 21));
+  const double seconds = late.json["seconds"];
+  EXPECT_GT(expected, 0.5 * seconds);
+  EXPECT_LT(expected, 1.5 * seconds);
+}
+
 TEST_F(Operator, FeedScaleIsAFactorOnEveryFeed) {
   const std::string once = command_.write("a.ngc", "G1 X8 F600\nY3 F300\nG93 G2 X9 Y4 I1 F60\nG94 G4 P0.1\n");
   const std::string thrice = command_.write("b.ngc", "G1 X8 F1800\nY3 F900\nG93 G2 X9 Y4 I1 F180\nG94 G4 P0.1\n");

@@ -80,7 +80,7 @@ TEST_F(BehindThePins, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_THAT(refused("--world default --check"), HasSubstr("--world: not with --check, which runs nothing"));
   EXPECT_THAT(refused("--world-events " + wrong), HasSubstr("--world"));
   const std::string high = command_.write("high.toml", "[axis.x]\n[button.a]\ninput = 20\n");
-  EXPECT_THAT(refused("--world " + high), HasSubstr("inputs 0 to 15"));
+  EXPECT_THAT(refused("--world " + high), HasSubstr("high.toml:3: button.a.input must be a whole number, 0 to 15"));
   const Outcome card = command_.run("run " + command_.path("p.ngc") + " --world default --card tcp://127.0.0.1:1");
   EXPECT_EQ(card.status, 2);
   EXPECT_THAT(card.err, HasSubstr("--world"));

@@ -322,7 +322,19 @@ TEST(Machine, RefusesBadOverrides) {
       "inputs, homing");
   EXPECT_THAT(override_error("axis.x.steps_per_mm"), StartsWith("--set axis.x.steps_per_mm: "));
   EXPECT_THAT(override_error(""), HasSubstr("not an assignment"));
-  EXPECT_THAT(override_error("axis.x.steps_per_mm=eighty"), HasSubstr("not TOML"));
+  EXPECT_THAT(override_error("axis.x.steps_per_mm=\"eighty"), HasSubstr("not TOML"));
+}
+
+// A shell removes quotation marks that are not quoted themselves.
+TEST(Machine, TextWithoutQuotationMarksIsRefusedWithThem) {
+  EXPECT_EQ(override_error("inputs.on_limit=ramp"),
+            "--set inputs.on_limit=ramp: not TOML: ramp is neither a number nor true or false, and text needs "
+            "quotation marks: --set 'inputs.on_limit=\"ramp\"'");
+  EXPECT_THAT(override_error("inputs.on_limit='ramp"), HasSubstr("not TOML: the next token"));
+  const std::string error = error_of(defaults() + "[inputs]\non_limit =ramp # as the drive does\n");
+  EXPECT_THAT(error, StartsWith("m.toml:"));
+  EXPECT_THAT(error, HasSubstr("not TOML: ramp is neither a number nor true or false, and text needs quotation marks: "
+                               "on_limit = \"ramp\""));
 }
 
 TEST(Machine, StepTimesFitTheCardsRegistersAtItsClock) {

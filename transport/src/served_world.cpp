@@ -47,7 +47,7 @@ void ServedWorld::say_hello(const std::string& token) {
   const std::string hello = fmt::format("trammel 1 at world{}{}\n", token.empty() ? "" : " ", token);
   stream_->write(reinterpret_cast<const std::uint8_t*>(hello.data()), hello.size());
   const std::string peer = stream_->peer();
-  const std::string line = read_answer(kWorldHelloTime);
+  const std::string line = read_answer(kWorldHelloTime, "no answer");
   if (line == "trammel 1 world") return;
   constexpr const char* kRefused = "trammel 1 refused: ";
   throw driver::LinkError(begins_with(line, kRefused)
@@ -55,8 +55,8 @@ void ServedWorld::say_hello(const std::string& token) {
                               : fmt::format("{}: what answers is no `trammel serve` of this version", peer));
 }
 
-// Reads up to the end of the line.
-std::string ServedWorld::read_answer(std::chrono::milliseconds longest) {
+// Reads up to the end of the line. `if_late` begins the error if none comes within `longest`.
+std::string ServedWorld::read_answer(std::chrono::milliseconds longest, const std::string& if_late) {
   const auto until = steady_clock::now() + longest;
   // If this call ends without a line, the next line would answer the wrong request; so the stream is then dropped.
   std::unique_ptr<ByteStream> stream = std::move(stream_);
@@ -65,7 +65,7 @@ std::string ServedWorld::read_answer(std::chrono::milliseconds longest) {
     const std::chrono::nanoseconds left = until - steady_clock::now();
     if (left.count() <= 0) {
       throw driver::LinkError(
-          fmt::format("{}: no answer in {:g} s", stream->peer(), std::chrono::duration<double>(longest).count()));
+          fmt::format("{}: {} within {:g} s", stream->peer(), if_late, std::chrono::duration<double>(longest).count()));
     }
     std::uint8_t bytes[1024];
     const std::size_t count =
@@ -87,7 +87,12 @@ std::string ServedWorld::request(const std::string& text, std::chrono::milliseco
   if (!stream_) throw driver::LinkError("the connection to the machine is lost");
   const std::string line = text + "\n";
   stream_->write(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
-  const std::string answer = read_answer(longest);
+  // While a condition is not met, the server does not answer.
+  const auto when = text.find(" when ");
+  const std::string if_late = when == std::string::npos ? "no answer"
+                                                        : fmt::format("nothing was done, because {} did not come",
+                                                                      printable(text.substr(when + 6)));
+  const std::string answer = read_answer(longest, if_late);
   if (begins_with(answer, "ok ")) return answer.substr(3);
   throw driver::ArgumentError(begins_with(answer, "no: ") ? answer.substr(4) : answer);
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "events.hpp"
+#include "trammel/sim/engine.hpp"
 
 namespace trammel::world {
 
@@ -34,7 +35,7 @@ ContactParameters read_contact(Table& table, bool normally_closed) {
 }
 
 unsigned read_input(Table& table, const char* key) {
-  return static_cast<unsigned>(table.whole(key, kMostInputs - 1, 0));
+  return static_cast<unsigned>(table.whole(key, sim::kInputs - 1, 0));
 }
 
 MotorParameters read_motor(Table& table) {

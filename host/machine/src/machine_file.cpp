@@ -296,6 +296,25 @@ std::string first_line_of(const std::exception& error) {
   return what;
 }
 
+// What to do about a line such as `on_limit = ramp`, whose value is text without quotation marks; "" for other lines. A
+// shell removes marks that are not quoted themselves.
+std::string hint_for(const Source& source, const std::string& line) {
+  const auto trimmed = [](const std::string& text) {
+    const auto from = text.find_first_not_of(" \t\r");
+    return from == std::string::npos ? "" : text.substr(from, text.find_last_not_of(" \t\r") + 1 - from);
+  };
+  const auto equals = line.find('=');
+  if (equals == std::string::npos) return "";
+  const std::string key = trimmed(line.substr(0, equals));
+  const std::string value = trimmed(line.substr(equals + 1, line.find('#', equals) - equals - 1));
+  const bool text = !value.empty() && std::isalpha(static_cast<unsigned char>(value.front())) != 0 &&
+                    value.find_first_of("\"'[]{}=\\") == std::string::npos;
+  if (!text || value.size() > kLongestQuote || key.size() > kLongestQuote) return "";
+  const std::string quoted = fmt::format("{}{}\"{}\"", key, source.has_lines ? " = " : "=", value);
+  return fmt::format("{} is neither a number nor true or false, and text needs quotation marks: {}", value,
+                     source.has_lines ? quoted : fmt::format("--set '{}'", quoted));
+}
+
 toml::value parse(const Source& source, const std::string& text) {
   // A machine file has two levels of tables.
   constexpr std::size_t kDeepest = 16;
@@ -309,7 +328,8 @@ toml::value parse(const Source& source, const std::string& text) {
   try {
     return toml::parse(stream, source.name);
   } catch (const toml::syntax_error& error) {
-    refuse(source.at_line(error.location().line()) + "not TOML: " + first_line_of(error));
+    const std::string hint = hint_for(source, error.location().line_str());
+    refuse(source.at_line(error.location().line()) + "not TOML: " + (hint.empty() ? first_line_of(error) : hint));
   } catch (const std::exception& error) {
     refuse(source.at_line(1) + "not TOML: " + first_line_of(error));
   }

@@ -30,7 +30,7 @@ class ServedWorld {
   std::string request(const std::string& text, std::chrono::milliseconds longest = std::chrono::seconds(10));
 
  private:
-  std::string read_answer(std::chrono::milliseconds longest);
+  std::string read_answer(std::chrono::milliseconds longest, const std::string& if_late);
   void say_hello(const std::string& token);
 
   std::unique_ptr<ByteStream> stream_;  // nullptr: lost
