@@ -31,21 +31,22 @@ foreach(kind IN LISTS TRAMMEL_RTL_COVERAGE)
   set(coverage_run_time "${VERILATOR_ROOT}/include/verilated_cov.cpp")
 endforeach()
 
+# Code that Verilator generates is not the project's, so it has no warnings. It has no sanitizers and no debug lines
+# either, because with these each card takes minutes to compile. The same holds for Verilator's run time: its writer of
+# FST files stores words at odd addresses, which ends a traced run under UBSan.
+set(TRAMMEL_VERILATED_OPTIONS -w)
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
+  list(APPEND TRAMMEL_VERILATED_OPTIONS -fno-sanitize=all -g0)
+endif()
+
 # Verilator's run time, once for all models.
 add_library(trammel_verilated STATIC "${VERILATOR_ROOT}/include/verilated.cpp" ${coverage_run_time}
   "${VERILATOR_ROOT}/include/verilated_threads.cpp" "${VERILATOR_ROOT}/include/verilated_fst_c.cpp")
 target_compile_features(trammel_verilated PUBLIC cxx_std_17)
 target_compile_definitions(trammel_verilated PUBLIC VM_COVERAGE=${TRAMMEL_VM_COVERAGE} VM_SC=0 VM_TRACE=1 VM_TRACE_VCD=0 VM_TRACE_FST=1)
-target_compile_options(trammel_verilated PRIVATE -w)
+target_compile_options(trammel_verilated PRIVATE ${TRAMMEL_VERILATED_OPTIONS})
 target_include_directories(trammel_verilated SYSTEM PUBLIC "${VERILATOR_ROOT}/include" "${VERILATOR_ROOT}/include/vltstd")
 target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
-
-# Code that Verilator generates is not the project's, so it has no warnings. It has no sanitizers and no debug lines
-# either, because with these each card takes minutes to compile.
-set(TRAMMEL_VERILATED_OPTIONS -w)
-if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
-  list(APPEND TRAMMEL_VERILATED_OPTIONS -fno-sanitize=all -g0)
-endif()
 
 # Verilator's headers, precompiled once for each optimisation level of generated code: they take half the compile time
 # of a block.
