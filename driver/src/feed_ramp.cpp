@@ -12,8 +12,6 @@ namespace trammel::driver {
 namespace {
 
 constexpr double kRampUpdate = card_map::constant::kUpdateClocks;
-// Clocks for which the card continues at a piece's last rate after its last tick (the planner's kSwapClocks).
-constexpr double kRampSwap = 6;
 constexpr double kLeastRampRate = 0x1p-32;  // one unit of the field `floor`
 
 double checked_rate(const char* name, double speed, std::uint32_t clock_hz) {
@@ -53,7 +51,7 @@ FeedCommand feed_for_ramp(const FeedRamp& ramp, std::uint32_t clock_hz) {
 
   // The first ticks pass at the previous speed. Then the card holds each rate for an update; the value used is the mean
   // of the update.
-  const double lead = std::min(ticks, kRampSwap * rate);
+  const double lead = std::min(ticks, kFeedSwapDelay * rate);
   const bool one_rate = clocks < kRampUpdate;
   const double behind = std::sqrt(std::max(0.0, rate * rate + 2 * acceleration * lead));
   const double first = one_rate ? ticks / clocks : behind + kRampUpdate / 2 * acceleration;

@@ -12,7 +12,7 @@ std::uint64_t BlockTimes::next_moving() {
 }
 
 void BlockTimes::add(const FeedMotion& motion, double lead, const TickRange& piece, bool stop, bool short_sight) {
-  const double swap = lead > 0 ? kSwapClocks : 0;
+  const double swap = lead > 0 ? kFeedSwapDelay : 0;
   const double ticks = static_cast<double>(piece.end - piece.begin);
   double before = -swap;
   rate_ = std::max(rate_, motion.rate);

@@ -65,8 +65,8 @@ double overshoot(const driver::FeedCommand& command, const FeedMotion& motion, d
   }
   for (int i = 0; i < 16 && clocks > 0 && gone(clocks - 1) >= ticks; ++i) --clocks;
   for (int i = 0; i < 16 && gone(clocks) < ticks; ++i) ++clocks;
-  const double beyond = gone(clocks + kSwapClocks) - ticks;
-  const double expected = kSwapClocks * motion.end_rate;
+  const double beyond = gone(clocks + kFeedSwapDelay) - ticks;
+  const double expected = kFeedSwapDelay * motion.end_rate;
   return beyond >= 0 && beyond <= expected + 1 + motion.end_rate ? beyond : expected;
 }
 

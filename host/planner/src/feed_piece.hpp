@@ -10,13 +10,12 @@
 #include "feed_motion.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/commands.hpp"
+#include "trammel/driver/feed_ramp.hpp"
 
 namespace trammel::planner {
 
 inline constexpr double kUpdate = card_map::constant::kUpdateClocks;
-// Clocks for which the card continues at a piece's last rate after the piece's last tick. Ticks in this time belong to
-// the next piece.
-inline constexpr double kSwapClocks = 6;
+using driver::kFeedSwapDelay;
 
 struct FeedPiece {
   driver::FeedCommand command;

@@ -81,7 +81,7 @@ void Quantiser::change_density(double density) {
   const double before = scale_.ticks_per_clock_at_1_mm_s;
   scale_.ticks_per_clock_at_1_mm_s = density / scale_.clock_hz;
   const double change = scale_.ticks_per_clock_at_1_mm_s / before;
-  sent_.lead.ahead = change < 1 ? std::max(0.0, sent_.lead.ticks - kSwapClocks * sent_.end_rate * change) : 0;
+  sent_.lead.ahead = change < 1 ? std::max(0.0, sent_.lead.ticks - kFeedSwapDelay * sent_.end_rate * change) : 0;
   shaper_->change_density(scale_, sent_.lead.ahead);
 }
 

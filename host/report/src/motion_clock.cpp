@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trammel/card_map.hpp"
+#include "trammel/driver/feed_ramp.hpp"
+
 namespace trammel::report {
 namespace {
 
-constexpr double kUpdate = 32;            // clocks
-constexpr std::uint64_t kSwapClocks = 6;  // from a piece's last tick to the first clock at the next one's rate
-constexpr std::uint64_t kRounding = 2;    // ticks
+constexpr double kUpdate = card_map::constant::kUpdateClocks;
+constexpr std::uint64_t kRounding = 2;  // ticks
 constexpr double kFastest = 1 - 0x1p-48;
 
 }  // namespace
@@ -123,7 +125,7 @@ void MotionClock::close(bool last) {
   // The clocks of the swap belong to the next piece, because on another path this piece's acceleration would be
   // meaningless.
   waiting_.push_back({piece, piece.clock() + clocks});
-  if (!last) clocks += kSwapClocks;
+  if (!last) clocks += driver::kFeedSwapDelay;
   clock_ = piece.clock() + clocks;
   begin_ = last ? static_cast<double>(piece.end_tick()) : piece.ticks_after(clocks);
   open_ = false;

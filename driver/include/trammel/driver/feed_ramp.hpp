@@ -9,6 +9,10 @@
 
 namespace trammel::driver {
 
+// Clocks for which the card continues at a piece's last rate after the piece's last tick. Ticks in this time belong to
+// the next piece.
+inline constexpr std::uint32_t kFeedSwapDelay = 6;
+
 // Constant acceleration from one speed to another. Speeds are feed ticks per second, 0 .. one per enabled clock.
 struct FeedRamp {
   std::uint64_t ticks = 0;  // length of the piece, feed ticks, 1 .. 2^40 - 1
