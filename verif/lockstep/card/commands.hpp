@@ -122,7 +122,9 @@ driver::FeedCommand random_piece(Random&& random, std::uint64_t ticks, double pa
   result.floor = static_cast<std::uint32_t>(0x1p32 / (4 * pace));
   if (random(2) == 0) {
     const double change = (static_cast<double>(random(2001)) - 1000) / 1000;
-    result.acceleration = static_cast<std::int64_t>(change * 0x1p64 / pace / pace / static_cast<double>(ticks));
+    constexpr double kMost = 0x1.fffffffffffffp62;  // the largest double below 2^63
+    const double acceleration = change * 0x1p64 / pace / pace / static_cast<double>(ticks);
+    result.acceleration = static_cast<std::int64_t>(std::clamp(acceleration, -kMost, kMost));
     result.jerk = -result.acceleration / static_cast<std::int64_t>(1 + random(100));
   }
   if (random(3) == 0) result.stop_distance = static_cast<std::uint32_t>(1 + random(random(8) == 0 ? 1U << 31 : 2000));
