@@ -53,6 +53,13 @@ FeedCommand feed_for_ramp(const FeedRamp& ramp, std::uint32_t clock_hz) {
   // of the update.
   const double lead = std::min(ticks, kFeedSwapDelay * rate);
   const bool one_rate = clocks < kRampUpdate;
+  // The field holds -0.5 to 0.5 ticks per clock.
+  if (!one_rate && std::abs(kRampUpdate * acceleration) >= 0.5) {
+    throw ArgumentError(
+        fmt::format("from {} to {} ticks/s in {} ticks: the rate changes by half a tick per clock or more within {} "
+                    "clocks; give the piece more ticks",
+                    ramp.speed, ramp.end_speed, ramp.ticks, kRampUpdate));
+  }
   const double behind = std::sqrt(std::max(0.0, rate * rate + 2 * acceleration * lead));
   const double first = one_rate ? ticks / clocks : behind + kRampUpdate / 2 * acceleration;
   FeedCommand piece;

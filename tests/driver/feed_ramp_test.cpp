@@ -96,6 +96,20 @@ TEST(FeedRamp, AShortPieceHasItsMeanRate) {
   EXPECT_EQ(feed_for_ramp(ramp_of(100, kRampHz, kRampHz), kRampHz).rate, std::uint64_t{0} - 2048);
 }
 
+// Beyond half a tick per clock and update the field would overflow, and its sign change.
+TEST(FeedRamp, TheChangeInAnUpdateIsWithinItsField) {
+  for (const double most : {1.0, 0.0}) {
+    EXPECT_NEAR(0x1p-64 * static_cast<double>(
+                              feed_for_ramp(ramp_of(33, (1 - most) * kRampHz, most * kRampHz), kRampHz).acceleration),
+                (2 * most - 1) * 16.0 / 33, 1e-12);
+    EXPECT_NE(argument_error([&] {
+                feed_for_ramp(ramp_of(32, (1 - most) * kRampHz, most * kRampHz), kRampHz);
+              }).find("give the piece more ticks"),
+              std::string::npos);
+  }
+  EXPECT_EQ(feed_for_ramp(ramp_of(15, 0, kRampHz), kRampHz).acceleration, 0) << "30 clocks: its mean rate";
+}
+
 // The ticks of half the slew time at the highest speed; 0 if and only if the piece ends at rest.
 TEST(FeedRamp, StopDistance) {
   FeedRamp ramp = ramp_of(1000, 0, 20'000);

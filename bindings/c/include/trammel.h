@@ -792,7 +792,8 @@ typedef struct trammel_ramp {
 // `clock_hz`: enabled clocks per second at the caller's 100 %. If 100 % is the full ratio, this is the card's clock. A
 // ramp to rest does not slow down below r = sqrt(deceleration * 1 tick), its speed half a tick before rest; otherwise
 // its last tick would be late. That tick comes early by 1 / (2 r). The class is TRAMMEL_CLASS_FEED. TRAMMEL_ARGUMENT
-// for values out of range, two speeds of 0, and a stop of more than 2^32 - 1 ticks. Needs no card; any thread.
+// for values out of range, two speeds of 0, a stop of more than 2^32 - 1 ticks, and a rate that changes by half a tick
+// per clock or more within 32 clocks. Needs no card; any thread.
 TRAMMEL_API trammel_result trammel_feed_for_ramp(const trammel_ramp* ramp, uint32_t clock_hz,
                                                  trammel_feed_command* command);
 

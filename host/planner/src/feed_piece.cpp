@@ -9,7 +9,11 @@ namespace {
 constexpr double kMinRate = 0x1p-32;  // one unit of the floor's field
 
 std::uint64_t fixed64(double rate) { return static_cast<std::uint64_t>(std::min(rate, 1 - 0x1p-53) * 0x1p64); }
-std::int64_t signed64(double change) { return static_cast<std::int64_t>(change * 0x1p64); }
+// A smooth piece shorter than an update can have a change beyond the field. The card does not add it.
+std::int64_t signed64(double change) {
+  constexpr double kMost = 0x1.fffffffffffffp62;  // the largest double below 2^63
+  return static_cast<std::int64_t>(std::clamp(change * 0x1p64, -kMost, kMost));
+}
 std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kMinRate, 0.5) * 0x1p32); }
 
 // Keeps the floor below the rates of a smooth motion that goes on, by the change of rate in four updates, so that the

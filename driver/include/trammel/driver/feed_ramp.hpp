@@ -33,7 +33,8 @@ struct FeedRamp {
 // its last tick would be late. That tick comes early by 1 / (2 r). A piece shorter than 32 clocks (one update of the
 // card) has a constant rate, its mean. The class is kFeed.
 //
-// Throws ArgumentError for values out of range, for two speeds of 0, and for a stop distance above 2^32 - 1 ticks.
+// Throws ArgumentError for values out of range, for two speeds of 0, for a stop distance above 2^32 - 1 ticks, and for
+// a rate that changes by half a tick per clock or more within 32 clocks, in a piece of 32 clocks or more.
 FeedCommand feed_for_ramp(const FeedRamp& ramp, std::uint32_t clock_hz);
 
 }  // namespace trammel::driver
