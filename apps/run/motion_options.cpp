@@ -182,6 +182,20 @@ simulation::Operation MotionChoice::operation(double max_percent) const {
   return result;
 }
 
+std::vector<std::string> late_event_notes(const std::vector<OperatorEvent>& events, std::size_t made, double seconds) {
+  std::vector<std::string> notes;
+  for (std::size_t n = made; n < events.size(); ++n) {
+    const OperatorEvent::Kind kind = events[n].kind;
+    if (kind == OperatorEvent::Kind::kResume) continue;
+    notes.push_back(fmt::format("{} {:g} had no effect: the run ended after {:.3f} s of card time",
+                                kind == OperatorEvent::Kind::kHold       ? "--hold-at"
+                                : kind == OperatorEvent::Kind::kOverride ? "--override-at"
+                                                                         : "--input-at",
+                                events[n].seconds, seconds));
+  }
+  return notes;
+}
+
 std::map<std::string, std::string> MotionChoice::of_plan() const {
   std::map<std::string, std::string> values;
   values["--feed-scale"] = fmt::format("{}", feed_scale);

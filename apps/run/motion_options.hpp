@@ -38,4 +38,9 @@ struct MotionChoice {
   std::map<std::string, std::string> of_plan() const;
 };
 
+// Notes that name the operator's events before which the run ended: those after the first `made` of `events`.
+// `seconds`: the length of the run.
+std::vector<std::string> late_event_notes(const std::vector<simulation::OperatorEvent>& events, std::size_t made,
+                                          double seconds);
+
 }  // namespace trammel::app

@@ -364,21 +364,6 @@ run::Outcome stream_to_simulation(const Simulation& of, const sim::SimulationOpt
   }
 }
 
-// Names the operator's events that the run's end came before.
-void tell_of_late_events(const std::vector<simulation::OperatorEvent>& events, const simulation::RunResult& result,
-                         double clock_hz) {
-  using Kind = simulation::OperatorEvent::Kind;
-  for (std::size_t n = result.events.size(); n < events.size(); ++n) {
-    const Kind kind = events[n].kind;
-    if (kind == Kind::kResume) continue;
-    tell("note", fmt::format("{} {:g} had no effect: the run ended after {:.3f} s of card time",
-                             kind == Kind::kHold       ? "--hold-at"
-                             : kind == Kind::kOverride ? "--override-at"
-                                                       : "--input-at",
-                             events[n].seconds, static_cast<double>(result.cycles) / clock_hz));
-  }
-}
-
 void write_results(const Simulation& of, PageListeners& listeners, const simulation::RunResult& result) {
   const RunArguments& options = of.options;
   SimulationFiles& files = of.files;
@@ -434,7 +419,10 @@ void run_in_simulation(const RunArguments& options) {
                               run,     world.get(), files};
   const run::Outcome outcome = stream_to_simulation(simulation, engine, card_seconds, listeners);
   const simulation::RunResult result = run.result(outcome);
-  tell_of_late_events(settings.operation.events, result, engine.clock_hz);
+  const double seconds = static_cast<double>(result.cycles) / engine.clock_hz;
+  for (const std::string& text : late_event_notes(settings.operation.events, result.events.size(), seconds)) {
+    tell("note", text);
+  }
   write_results(simulation, listeners, result);
 }
 
