@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 
@@ -12,6 +13,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/run/card_place.hpp"
 #include "trammel/run/configure.hpp"
 
 namespace trammel::app {
@@ -48,6 +50,16 @@ std::string place_and_cure(driver::Card& card, const machine::Machine& machine) 
   } catch (const driver::TimeoutError&) {  // the text says that the card is on its ramp
   }
   return stop_text(machine, read_stopped(card));
+}
+
+std::string lost_link_text(double watchdog) {
+  const std::string stops =
+      watchdog != 0 ? fmt::format("the card stops on the path, by its watchdog of {:g} s at the latest", watchdog)
+                    : "without a watchdog the card stops only where `trammel serve` sees the link close";
+  return fmt::format(
+      "the link to the card is lost; {}. When the link is back, `trammel recover` says where it stands. A link that is "
+      "only slow needs `timeout=MS` in the URL",
+      stops);
 }
 
 void clear_with_note(driver::Card& card) {
@@ -129,7 +141,8 @@ void with_card(const transport::CardUrl& place, Purpose purpose,
   }
 }
 
-void require_axes(const driver::Card& card, const machine::Machine& machine) {
+void match_axes(driver::Card& card, const machine::Machine& machine) {
+  card.name_axes(run::names_of_card_axes(machine));
   const unsigned axes = card.identification().axes;
   if (machine.motors() <= axes) return;
   throw UsageError(
@@ -163,8 +176,15 @@ MotionWatchdog::MotionWatchdog(driver::Card& card, const machine::MotionSettings
   }
 }
 
-void tell_of_fault(driver::Card& card, const machine::Machine& machine) noexcept {
+void limit_patience(transport::Connection& connection, const machine::MotionSettings& motion) {
+  constexpr std::chrono::seconds kForSlowLinks(1);
+  if (motion.watchdog != 0) connection.set_patience(run::watchdog_time(motion) + kForSlowLinks);
+}
+
+void tell_of_stop(driver::Card& card, const transport::Connection& connection,
+                  const machine::Machine& machine) noexcept {
   try {
+    if (connection.lost()) tell("note", lost_link_text(machine.motion.watchdog));
     if (card.read_status().faulted) tell("note", place_and_cure(card, machine));
   } catch (const std::exception&) {
   }

@@ -37,8 +37,9 @@ enum class Purpose { kRead, kMove };
 void with_card(const transport::CardUrl& url, Purpose purpose,
                const std::function<void(driver::Card&, transport::Connection&)>& use);
 
-// Throws UsageError if the machine has more motors than the card has axes.
-void require_axes(const driver::Card& card, const machine::Machine& machine);
+// Names the card's axes as the machine file does. Throws UsageError if the machine has more motors than the card has
+// axes.
+void match_axes(driver::Card& card, const machine::Machine& machine);
 
 // Prepares the card to be moved by this program, with a note if leftovers of an earlier program are dropped. The card's
 // record of an interrupted run is first saved in its file. Throws UsageError for a card that moves, and for one with a
@@ -54,10 +55,15 @@ class MotionWatchdog {
   std::optional<driver::WatchdogScope> scope_;
 };
 
-// After an error of the motion: prints a note with the card's position, its place on the path, and the remedy for its
-// fault; nothing without a fault. Waits for the end of the ramp. Never throws, because the earlier error is the one to
-// report.
-void tell_of_fault(driver::Card& card, const machine::Machine& machine) noexcept;
+// A silent card counts as lost a second after the machine file's watchdog has expired: the card has stopped by then, so
+// waiting longer is useless. Without a watchdog the wait is the URL's.
+void limit_patience(transport::Connection& connection, const machine::MotionSettings& motion);
+
+// After an error of the motion: prints a note. If the link is lost, it says when the card stops; if the card has a
+// fault, its position, its place on the path, and the remedy, after the end of the ramp. Prints nothing otherwise.
+// Never throws, because the earlier error is the one to report.
+void tell_of_stop(driver::Card& card, const transport::Connection& connection,
+                  const machine::Machine& machine) noexcept;
 
 // Refuses `option` of the simulated card if it is `given` together with --card.
 void refuse_with_card(const CardChoice& card, const char* option, bool given);

@@ -122,7 +122,7 @@ void tell_under_runs(driver::Card& card) {
 
 void serve_on(const GrblOptions& options, const transport::CardUrl& url, const machine::Machine& machine) {
   with_card(url, Purpose::kMove, [&](driver::Card& first, transport::Connection& connection) {
-    require_axes(first, machine);
+    match_axes(first, machine);
     if (options.card.text) take_over(first, options.card, machine);
     run::AttentiveBus bus(connection.bus(), grbl::CardMachine::kLongestSleep);
     driver::Card card = driver::Card::open(bus);

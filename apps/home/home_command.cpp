@@ -83,9 +83,10 @@ void show(const machine::Machine& machine, const std::vector<run::HomedAxis>& ho
   to_standard_output(text + fmt::format("the machine stands at {}\n", run::place_text(at, machine)));
 }
 
-void home_on(driver::Card& card, const HomeOptions& options) {
+void home_on(driver::Card& card, transport::Connection& connection, const HomeOptions& options) {
   const machine::Machine machine = options.machine.load();
-  require_axes(card, machine);
+  match_axes(card, machine);
+  limit_patience(connection, machine.motion);
   const std::vector<std::size_t> axes = axes_of(options.words, machine);
   prepare(card, machine, options.card);
   run::MachinePosition position(card.read_snapshot(), machine);
@@ -99,18 +100,19 @@ void home_on(driver::Card& card, const HomeOptions& options) {
     show(machine, homed, standing(card, machine));
   } catch (const driver::StoppedError&) {
     signals.end(run::place_text(position.millimetres(), machine));
-  } catch (const driver::FaultError&) {
-    tell_of_fault(card, machine);
-    throw;
   } catch (const driver::ArgumentError& error) {
     throw UsageError(error.what());
+  } catch (const driver::Error&) {
+    tell_of_stop(card, connection, machine);
+    throw;
   }
 }
 
 void home(const HomeOptions& options) {
   const auto url = options.card.url();
   if (!url) throw UsageError("home: needs --card, because a card that this command simulates has no switches");
-  with_card(*url, Purpose::kMove, [&](driver::Card& card, transport::Connection&) { home_on(card, options); });
+  with_card(*url, Purpose::kMove,
+            [&](driver::Card& card, transport::Connection& connection) { home_on(card, connection, options); });
 }
 
 }  // namespace

@@ -169,9 +169,10 @@ void override_limits(driver::Card& card, const machine::Machine& machine, const 
   tell("note", "the limits that are active now stop nothing until they are released");
 }
 
-void jog_on(driver::Card& card, const JogArguments& options) {
+void jog_on(driver::Card& card, transport::Connection& connection, const JogArguments& options) {
   const machine::Machine file = options.machine.load();
-  require_axes(card, file);
+  match_axes(card, file);
+  limit_patience(connection, file.motion);
   distance_of(options.words, file);  // impossible distances are refused first
   const run::Start start = begin_at_place(card, file, options.card);
   const machine::Machine& machine = start.machine;
@@ -190,8 +191,8 @@ void jog_on(driver::Card& card, const JogArguments& options) {
     }
   } catch (const driver::StoppedError&) {
     signals.end(run::place_text(position.millimetres(), machine));
-  } catch (const driver::FaultError&) {
-    tell_of_fault(card, machine);
+  } catch (const driver::Error&) {
+    tell_of_stop(card, connection, machine);
     throw;
   }
   to_standard_output(fmt::format("the machine stands at {}\n", run::place_text(position.millimetres(), machine)));
@@ -206,7 +207,8 @@ void jog(const JogArguments& options) {
   if (options.words.empty() && (::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0)) {
     throw UsageError("jog: name axes and distances, such as X10 Y-0.5; keys need a terminal");
   }
-  with_card(*url, Purpose::kMove, [&](driver::Card& card, transport::Connection&) { jog_on(card, options); });
+  with_card(*url, Purpose::kMove,
+            [&](driver::Card& card, transport::Connection& connection) { jog_on(card, connection, options); });
 }
 
 }  // namespace

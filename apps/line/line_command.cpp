@@ -213,16 +213,18 @@ Made any_line(driver::Card& card, const LineArguments& options, const driver::Sn
 }
 
 // Runs a line on an external card, which stops by itself if this program dies or is stopped.
-Made watched_line(driver::Card& card, const LineArguments& options, const driver::Snapshot& before) {
+Made watched_line(driver::Card& card, transport::Connection& connection, const LineArguments& options,
+                  const driver::Snapshot& before) {
   const machine::Machine machine = options.machine.load();
+  limit_patience(connection, machine.motion);
   const MotionWatchdog watchdog(card, machine.motion);
   try {
     return any_line(card, options, before, nullptr);
-  } catch (const driver::FaultError&) {
-    tell_of_fault(card, machine);
+  } catch (const driver::Error&) {
+    tell_of_stop(card, connection, machine);
     throw;
   } catch (const run::RunError&) {
-    tell_of_fault(card, machine);
+    tell_of_stop(card, connection, machine);
     throw;
   }
 }
@@ -311,7 +313,7 @@ std::uint8_t axes_of(const std::vector<std::int64_t>& pulses) {
   return static_cast<std::uint8_t>(axes);
 }
 
-CardResult make_line_on(driver::Card& card, const LineArguments& options) {
+CardResult make_line_on(driver::Card& card, transport::Connection& connection, const LineArguments& options) {
   const std::vector<std::int64_t> pulses = displacement_of(options);
   if (pulses.size() > card.identification().axes) {
     throw UsageError(fmt::format("--to: the card has {} axes", card.identification().axes));
@@ -334,7 +336,7 @@ CardResult make_line_on(driver::Card& card, const LineArguments& options) {
   run::guard_homed_axes(card, machine, run::read_card_place(card));
   run::configure_outputs(card, machine);
   const driver::Snapshot& before = place.now;
-  const Made made = watched_line(card, options, before);
+  const Made made = watched_line(card, connection, options, before);
   CardResult result;
   result.moved = moved(card, before, pulses.size());
   for (std::size_t a = 0; a < pulses.size(); ++a) {
@@ -358,8 +360,9 @@ void line_on_card(const LineArguments& options, const transport::CardUrl& url) {
   outputs.check();
   outputs.open();
   CardResult result;
-  with_card(url, Purpose::kMove,
-            [&](driver::Card& card, transport::Connection&) { result = make_line_on(card, options); });
+  with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
+    result = make_line_on(card, connection, options);
+  });
   if (json != nullptr) {
     nlohmann::ordered_json text;
     text["card"] = url.text;

@@ -94,7 +94,7 @@ void linuxcnc_command(const LinuxcncOptions& options) {
   if (const auto url = options.card.url()) {
     options.local.world.refuse_with(options.card);
     with_card(*url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
-      require_axes(card, machine);
+      match_axes(card, machine);
       take_over(card, options.card, machine);
       serve_linuxcnc(options, *region, connection.bus(), machine, recorded);
     });

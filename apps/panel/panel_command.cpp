@@ -99,7 +99,7 @@ void serve_page(const PanelOptions& options, driver::Card& card, run::AttentiveB
 
 void serve_panel_on(const PanelOptions& options, const transport::CardUrl& url, const machine::Machine& machine) {
   with_card(url, Purpose::kMove, [&](driver::Card& first, transport::Connection& connection) {
-    require_axes(first, machine);
+    match_axes(first, machine);
     if (options.card.text) take_over(first, options.card, machine);
     run::AttentiveBus bus(connection.bus(), grbl::CardMachine::kLongestSleep);
     driver::Card card = driver::Card::open(bus);

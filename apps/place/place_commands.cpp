@@ -73,7 +73,7 @@ const char* motion_text(const driver::Status& status) {
 void position(const PlaceOptions& options) {
   const machine::Machine machine = options.machine.load();
   with_card(card_of(options, "position"), Purpose::kRead, [&](driver::Card& card, transport::Connection&) {
-    require_axes(card, machine);
+    match_axes(card, machine);
     const run::CardPlace place = run::read_card_place(card);
     to_standard_output(place_text(machine, place) + motion_text(place.now.status));
   });
@@ -91,7 +91,7 @@ std::string letters_of(const std::vector<std::string>& words) {
 void zero(const PlaceOptions& options) {
   const machine::Machine machine = options.machine.load();
   with_card(card_of(options, "zero"), Purpose::kMove, [&](driver::Card& card, transport::Connection&) {
-    require_axes(card, machine);
+    match_axes(card, machine);
     const driver::Status status = card.read_status();
     if (status.busy) throw UsageError("zero: the card is moving, or holds in a motion. Set zero when it is at rest");
     run::set_zero(card, machine, letters_of(options.axes), options.homed);
@@ -154,7 +154,7 @@ std::string how_to_resume(const CardChoice& card) {
 void recover(const PlaceOptions& options) {
   const machine::Machine machine = options.machine.load();
   with_card(card_of(options, "recover"), Purpose::kRead, [&](driver::Card& card, transport::Connection&) {
-    require_axes(card, machine);
+    match_axes(card, machine);
     const StoppedCard stopped = read_stopped(card);
     const run::CardPlace& place = stopped.place;
     to_standard_output(fmt::format("stopped  {}\n", cause_of(card, place.now.status)));

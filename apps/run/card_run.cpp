@@ -197,24 +197,6 @@ class Record {
   ResumeRecord record_;
 };
 
-// After the watchdog's time the card has stopped, so waiting longer is useless. One second is added for slow links.
-constexpr std::chrono::seconds kBeyondWatchdog(1);
-
-// For a run that ended because the card was not reachable.
-void tell_of_lost_link(const transport::Connection& connection, const machine::Machine& machine) noexcept {
-  if (!connection.lost()) return;
-  try {
-    const double watchdog = machine.motion.watchdog;
-    const std::string stops =
-        watchdog != 0 ? fmt::format("the card stops on the path, by its watchdog of {:g} s at the latest", watchdog)
-                      : "without a watchdog the card stops only where `trammel serve` sees the link close";
-    tell("note", fmt::format("the link to the card is lost; {}. When the link is back, `trammel recover` says where it "
-                             "stands. A link that is only slow needs `timeout=MS` in the URL",
-                             stops));
-  } catch (const std::exception&) {
-  }
-}
-
 // Runs with the watchdog: the card stops by itself if this program dies or is stopped.
 run::Outcome run_watched(run::Runner& runner, driver::Card& card, transport::Connection& connection,
                          const machine::Machine& machine, const CardRunOptions& options, Record& record) {
@@ -222,8 +204,7 @@ run::Outcome run_watched(run::Runner& runner, driver::Card& card, transport::Con
   try {
     return run_until_signal(runner, card, machine, options.stream);
   } catch (const run::RunError&) {
-    tell_of_lost_link(connection, machine);
-    tell_of_fault(card, machine);
+    tell_of_stop(card, connection, machine);
     record.interrupted();
     throw;
   } catch (const EndedBySignal&) {
@@ -243,8 +224,8 @@ std::string link_text(const CardRunResult& result) {
 CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine& machine, driver::Card& card,
                           transport::Connection& connection, const CardRunOptions& options) {
   const driver::Identification& id = card.identification();
-  require_axes(card, machine);
-  if (machine.motion.watchdog != 0) connection.set_patience(run::watchdog_time(machine.motion) + kBeyondWatchdog);
+  match_axes(card, machine);
+  limit_patience(connection, machine.motion);
   CardRunResult result;
   run::CardPlace found = run::read_card_place(card);
   const bool trust = options.card.trust_position;

@@ -19,7 +19,7 @@ namespace trammel::app {
 
 // The cause that ended a run, from the card: its reaction, time and position. Waits for the end of the ramp.
 struct StopCause {
-  std::string name;      // "LIMIT (axis 0 plus)"; without a fault, the reason of the end
+  std::string name;      // "LIMIT (X plus)"; without a fault, the reason of the end
   std::string reaction;  // "ramp", "immediate stop", or "end of the run" without a fault
   std::uint64_t cycle = 0;
   std::vector<std::int64_t> position;  // pulses by motor, relative to machine zero

@@ -65,6 +65,9 @@ void bind_state(nb::class_<PythonCard>& card) {
       .def("read_faults", waiting([](PythonCard& of) { return of.card.read_faults(); }), "Latched faults: a mask.")
       .def("read_fault_text", waiting([](PythonCard& of) { return of.card.read_fault_text(); }),
            "The latched faults as text, with the axes and sides of limits: 'LIMIT (axis 0 plus)'; 'none'.")
+      .def("name_axes",
+           waiting([](PythonCard& of, std::vector<std::string> names) { of.card.name_axes(std::move(names)); }),
+           "names"_a, "The names of the axes, by number, in this object's texts about faults.")
       .def("clear_faults", waiting([](PythonCard& of) { of.card.clear_faults(); }),
            "Clears the latched faults; on the ramp of one it waits for the end first. Nothing moves by it. The fault "
            "of a drive that still reports it stays, and so does an emergency stop whose button is pressed.")

@@ -1,6 +1,8 @@
 // Filters, roles and stops of the card's inputs: reads and writes of their registers.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "register_checks.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
@@ -119,10 +121,12 @@ LimitState Card::read_limit_state() {
           (state & field::kLimitStateSoftPlus) != 0};
 }
 
-std::string Card::read_fault_text(const std::vector<std::string>& axes) {
+void Card::name_axes(std::vector<std::string> names) { parts_->registers.name_axes(std::move(names)); }
+
+std::string Card::read_fault_text() {
   const bool has_inputs = card_map::has_engine(identification().engines, card_map::engine::kMachineInputs);
   const std::uint32_t limits = has_inputs ? parts_->registers.read(reg::kLimitState) : 0;
-  return describe_faults(read_faults(), limits, axes);
+  return describe_faults(read_faults(), limits, parts_->registers.axis_names());
 }
 
 void Card::set_input_stops(const InputStops& stops) {

@@ -36,8 +36,10 @@ RefusedError::RefusedError(std::uint8_t reason, std::uint8_t command_number, std
       command_number_(command_number),
       address_(address) {}
 
-FaultError::FaultError(std::uint32_t faults, const std::string& context, std::optional<std::uint32_t> limit_state)
-    : Error(fmt::format("{}: the card has stopped with a fault: {}", context, describe_faults(faults, limit_state))),
+FaultError::FaultError(std::uint32_t faults, const std::string& context, std::optional<std::uint32_t> limit_state,
+                       const std::vector<std::string>& axes)
+    : Error(fmt::format("{}: the card has stopped with a fault: {}", context,
+                        describe_faults(faults, limit_state, axes))),
       faults_(faults),
       limit_state_(limit_state.value_or(0)) {}
 

@@ -178,7 +178,7 @@ void Registers::throw_fault(std::uint32_t faults, std::string_view context) {
   constexpr std::uint32_t kNamed = field::kFaultLimit | field::kFaultDriveFault | field::kFaultSoftLimit;
   std::optional<std::uint32_t> state;
   if ((faults & kNamed) != 0) state = read(reg::kLimitState);
-  throw FaultError(faults, std::string(context), state);
+  throw FaultError(faults, std::string(context), state, axis_names_);
 }
 
 void Registers::throw_if_faulted(const Status& status, std::string_view context) {

@@ -78,8 +78,8 @@ TEST(CheckList, RunsOnTheSimulatedMachine) {
   EXPECT_THAT(step("monitor --card CARD --looks", 0), HasSubstr("at rest  input 1 (limit plus of axis 0)"));
   EXPECT_THAT(step("jog X1 ", 0), HasSubstr("the machine stands at X 1.0000"));
   EXPECT_THAT(step("jog X-1 ", 0), HasSubstr("the machine stands at X 0.0000"));
-  EXPECT_THAT(step("jog X30 --speed 2", 1, "jog X-150 --speed 60"), HasSubstr("LIMIT (axis 0 minus)"));
-  EXPECT_THAT(step("recover", 0), HasSubstr("stopped  by LIMIT (axis 0 minus)"));
+  EXPECT_THAT(step("jog X30 --speed 2", 1, "jog X-150 --speed 60"), HasSubstr("LIMIT (X minus)"));
+  EXPECT_THAT(step("recover", 0), HasSubstr("stopped  by LIMIT (X minus)"));
   step("jog X-5 --speed 2 --clear-faults", 0, "jog X5 --speed 2 --clear-faults");
   step("home Z", 0);
   EXPECT_THAT(step("home --card", 0), HasSubstr("the edges of search and approach differ by"));

@@ -1,5 +1,5 @@
 // `trammel run` on a link that is cut in mid program, closed or silent: the run ends and tells why, the card stops on
-// the path, and --resume completes the undisturbed path.
+// the path, and --resume completes the undisturbed path. A jog and a line end as soon.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -26,6 +26,9 @@ class CutLink : public ResumedRun {
   // Starts a run and cuts its link after a while. Returns the run's standard error.
   std::string cut(State way, int milliseconds, const std::string& options, bool resumed) {
     Running client = start(options);
+    return cut(client, way, milliseconds, resumed);
+  }
+  std::string cut(Running& client, State way, int milliseconds, bool resumed) {
     let_move(milliseconds, resumed);
     cable_.set(way);
     const std::optional<int> status = client.wait();
@@ -75,6 +78,22 @@ TEST_F(CutLink, ThatFallsSilentEndsTheRunBehindTheWatchdogAndSaysWhatToDo) {
   EXPECT_THAT(said, HasSubstr("`timeout=MS` in the URL"));
   EXPECT_THAT(said, HasSubstr("with the same arguments and --resume continues"));
   EXPECT_THAT(command_.run("recover --card " + server_.url()).out, HasSubstr("WATCHDOG"));
+}
+
+// Motions of 20 s. Without the watchdog's limit they would wait 100 s for an answer.
+TEST_F(CutLink, ThatFallsSilentEndsAJogAndALine) {
+  using Clock = std::chrono::steady_clock;
+  for (const char* motion : {"jog X100 --speed 5", "line --to 20000,0 --speed 1000"}) {
+    SCOPED_TRACE(motion);
+    const auto begun = Clock::now();
+    ++started_;
+    Running client(command_, motion + (" --clear-faults --set motion.watchdog=1 --card " + card_), said_in());
+    const std::string said = cut(client, State::kSilent, 100, false);
+    EXPECT_LT(Clock::now() - begun, std::chrono::seconds(20)) << said;
+    EXPECT_THAT(said, HasSubstr("no answer for "));
+    EXPECT_THAT(said, HasSubstr("the link to the card is lost; the card stops on the path"));
+    EXPECT_THAT(command_.run("recover --card " + server_.url()).out, HasSubstr("WATCHDOG"));
+  }
 }
 
 }  // namespace

@@ -44,10 +44,10 @@ TEST_F(ServedSwitches, AProgramStopsAtItsLimit) {
       "X has stepped into its limit at the plus end: move it towards minus, for example with `trammel jog X-5 "
       "--clear-faults "
       "--trust-position` (5 mm); only steps further into it are barred";
-  EXPECT_THAT(stopped.err, AllOf(HasSubstr("LIMIT (axis 0 plus)"), HasSubstr("note: the card stands at X 8"),
+  EXPECT_THAT(stopped.err, AllOf(HasSubstr("LIMIT (X plus)"), HasSubstr("note: the card stands at X 8"),
                                  HasSubstr(" Y 0.0000 Z 0.0000 E 0.0000 mm (pulses 7"), HasSubstr("," + place),
                                  HasSubstr("; " + cure)));
-  EXPECT_THAT(look("recover"), AllOf(HasSubstr("stopped  by LIMIT (axis 0 plus)\nX      8"),
+  EXPECT_THAT(look("recover"), AllOf(HasSubstr("stopped  by LIMIT (X plus)\nX      8"),
                                      HasSubstr("\npath    " + place + "\n"), HasSubstr("\nnext     " + cure + "\n")));
   EXPECT_THAT(look("monitor --looks 1"),
               AllOf(HasSubstr("FAULT: LIMIT"), HasSubstr("ACTIVE   input 3 (limit plus of axis 0)"),
@@ -57,7 +57,7 @@ TEST_F(ServedSwitches, AProgramStopsAtItsLimit) {
   EXPECT_THAT(look("recover"), AllOf(Not(HasSubstr("LIMIT")), Not(HasSubstr("path "))))
       << "it does not stand where the stop was";
   const Outcome again = run("G91\nG1 X5 F1800\n", " --trust-position");
-  EXPECT_THAT(again.err, HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(again.err, HasSubstr("LIMIT (X plus)"));
 }
 
 // The command that the message suggests moves the axis away.
@@ -82,7 +82,7 @@ TEST_F(ServedSwitches, WithABeltTheWayAwayNeedsAnOverride) {
   };
   const Outcome barred = jog("X-5");
   EXPECT_EQ(barred.status, 1);
-  EXPECT_THAT(barred.err, HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(barred.err, HasSubstr("LIMIT (X plus)"));
   const Outcome further = jog("X5 --override-limits");
   EXPECT_EQ(further.status, 2);
   EXPECT_THAT(further.err, HasSubstr("X5 goes further into the limit at the plus end"));
@@ -96,7 +96,7 @@ TEST_F(ServedSwitches, ADriveThatReportsAFaultIsNamed) {
   const std::string drive = " --set inputs.y_drive_fault=\"{input=3, normally='closed'}\"";
   const Outcome stopped =
       command_.run("run " + command_.write("p.ngc", "G1 X300 F1800\n") + drive + " --card " + server_.moving());
-  EXPECT_THAT(stopped.err, AllOf(HasSubstr("DRIVE_FAULT (axis 1)"),
+  EXPECT_THAT(stopped.err, AllOf(HasSubstr("DRIVE_FAULT (Y)"),
                                  HasSubstr("the drive of Y reports a fault: clear it at the drive")));
 }
 

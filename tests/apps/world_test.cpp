@@ -38,7 +38,7 @@ TEST_F(BehindThePins, TheCarriagesStandWhereTheCardCounts) {
 TEST_F(BehindThePins, ALimitSwitchStopsTheRun) {
   const Outcome run = run_program("G1 X350 F9000\n", "--world " TRAMMEL_EXAMPLES_DIR "/world.toml");
   EXPECT_EQ(run.status, 1);
-  EXPECT_THAT(run.err, AllOf(HasSubstr("LIMIT (axis 0 plus)"), HasSubstr("note: world: carriages at X 300."),
+  EXPECT_THAT(run.err, AllOf(HasSubstr("LIMIT (X plus)"), HasSubstr("note: world: carriages at X 300."),
                              HasSubstr("pressed: x_plus"), Not(HasSubstr("lost its place"))));
 }
 
@@ -60,7 +60,7 @@ TEST_F(BehindThePins, OfTheServedCardToo) {
   Server server(command_, "--engine model --fast --world default");
   const std::string file = command_.write("p.ngc", "G1 X350 F9000\n");
   const Outcome run = command_.run("run " + file + " --set inputs.x_limit_plus=1 --card " + server.moving());
-  EXPECT_THAT(run.err, HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(run.err, HasSubstr("LIMIT (X plus)"));
   EXPECT_THAT(server.end(), AllOf(HasSubstr("note: world: carriages at X 300."), HasSubstr("pressed: x_plus")));
 }
 

@@ -74,11 +74,13 @@ class Inputs(unittest.TestCase):
         self.assertEqual(rest.ticks_left // 1000, 500 - rest.position[0])
         self.assertEqual(card.read_limit_state().plus, [True, False, False, False])
         self.assertEqual(card.read_fault_text(), "LIMIT (axis 0 plus)")
+        card.name_axes(["X"])
+        self.assertEqual(card.read_fault_text(), "LIMIT (X plus)")
         self.assertEqual(trammel.describe_faults(0x800, 0x201, ["X"]), "LIMIT (X minus, axis 1 plus)")
         card.clear_faults()
         self.assertEqual(card.read_fault_text(), "none")
         card.run_line([-20], duration_ns=20_000_000)
-        with self.assertRaisesRegex(trammel.FaultError, "axis 0 plus"):
+        with self.assertRaisesRegex(trammel.FaultError, "X plus"):
             card.run_line([10], duration_ns=10_000_000)
         card.clear_faults()
         card.override_limits(plus=[0])

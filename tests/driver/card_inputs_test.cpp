@@ -82,7 +82,14 @@ TEST_F(CardInputsOnModel, AnOverrideIsOfOneEnd) {
   start_line(card_, {0, -5}, 10ms);
   EXPECT_THROW(card_.wait_until_idle(1s), FaultError);
   EXPECT_EQ(card_.read_fault_text(), "LIMIT (axis 1 minus)");
-  EXPECT_EQ(card_.read_fault_text({"X", "Y"}), "LIMIT (Y minus)");
+  card_.name_axes({"X", "Y"});
+  EXPECT_EQ(card_.read_fault_text(), "LIMIT (Y minus)");
+  try {
+    card_.wait_until_idle(1s);
+    ADD_FAILURE() << "the fault is still there";
+  } catch (const FaultError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("LIMIT (Y minus)"));
+  }
 }
 
 TEST(CardInputs, RolesHaveNames) {
@@ -100,7 +107,8 @@ TEST(CardInputs, FaultsOfACardWithoutThemHaveATextToo) {
   bus.values[reg::kFault] = field::kFaultTickMismatch | 1U;
   bus.values[reg::kLimitState] = 0xFFFFFF;
   bus.forget();
-  EXPECT_EQ(card.read_fault_text({"X"}), "step fault of X, TICK_MISMATCH");
+  card.name_axes({"X"});
+  EXPECT_EQ(card.read_fault_text(), "step fault of X, TICK_MISMATCH");
   EXPECT_THAT(bus.log, ::testing::ElementsAre(test::was_read(reg::kFault)));
 }
 

@@ -73,13 +73,13 @@ TEST_F(Limits, NothingIsActiveOnACardThatIsNotWired) {
 // One input is wired; the normally open one beside it stays at rest.
 TEST_F(Limits, OneWiredInputLeavesTheOthersAlone) {
   bus_.at(kPressed, [](sim::Engine& engine) { engine.set_input(3, true); });
-  EXPECT_THAT(fault_of("G1 X100 Y-10 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(fault_of("G1 X100 Y-10 F3000\n"), HasSubstr("LIMIT (X plus)"));
   EXPECT_EQ(card_.read_inputs(), 8U);
 }
 
 TEST_F(Limits, StopsAtOnceWhereNoOvertravelIsDeclared) {
   press_at(kPressed, 0b11000);
-  EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (X plus)"));
   EXPECT_EQ(card_.read_limit_state().plus, 1);
   // The travel at 50 mm/s during the filter's time and one scan, plus at most 4 pulses that are already on their way.
   EXPECT_LE(pulses_behind(), 4 + static_cast<std::int64_t>(50 * kPulsesOfAMm * (0.0005 + 256.0 / kSlowClock)));
@@ -99,7 +99,7 @@ TEST_F(Limits, TheWayBackIsFreeAndTheWayOnIsNot) {
   EXPECT_EQ(fault_of("G91\nG1 X-5 F3000\n", there), "no fault");
   position.look(card_.read_snapshot());
   there.start = position.millimetres();
-  EXPECT_THAT(fault_of("G91\nG1 X1 F3000\n", there), HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(fault_of("G91\nG1 X1 F3000\n", there), HasSubstr("LIMIT (X plus)"));
   card_.clear_faults();
   // The switch is released: the way on is free.
   engine_->set_inputs(0b10000);
@@ -114,7 +114,7 @@ TEST_F(Limits, StopsOnARampWhereTheOvertravelIsLongEnough) {
   machine::apply_override(machine_, "axis.x.overtravel=30");
   machine::apply_override(machine_, "axis.y.overtravel=30");
   press_at(kPressed, 0b11000);
-  EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (X plus)"));
   engine_->wait(kSlowClock);  // the ramp continues after the fault
   EXPECT_GT(pulses_behind(), static_cast<std::int64_t>(3 * kPulsesOfAMm));
   EXPECT_LT(pulses_behind(), static_cast<std::int64_t>(5 * kPulsesOfAMm));
@@ -126,7 +126,7 @@ TEST_F(Limits, StopsOnARampWhereTheOvertravelIsLongEnough) {
 // The switch at the other end is normally open: it reads 0 when it is pressed.
 TEST_F(Limits, NormallyOpenAtTheNegativeEnd) {
   press_at(kPressed, 0b00000);
-  EXPECT_THAT(fault_of("G1 Y-100 F3000\n"), HasSubstr("LIMIT (axis 1 minus)"));
+  EXPECT_THAT(fault_of("G1 Y-100 F3000\n"), HasSubstr("LIMIT (Y minus)"));
 }
 
 // The bounce is shorter than the filter.

@@ -34,7 +34,7 @@ TEST(EngineInWorld, ACarriageFollowsTheCard) {
 
 TEST(EngineInWorld, ACarriageRunsIntoItsLimitAndTheCardStops) {
   WorldCard c(near_plus());
-  EXPECT_THAT(c.end_of("G1 X100 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
+  EXPECT_THAT(c.end_of("G1 X100 F3000\n"), HasSubstr("LIMIT (X plus)"));
   EXPECT_TRUE(c.world.pressed("x_plus"));
   const Carriage& x = c.world.carriage(0);
   const std::int64_t at = c.engine.positions()[0];

@@ -356,7 +356,7 @@ test('inputs, causes, reactions, and where pulses and carriage part are seen', a
   // Each has a line in the charts, and as much of its text as fits.
   const named = await page.evaluate(() => window.trammel.lanes.named)
   assert.equal(named.length, 3, named.join('; '))
-  for (const name of ['feed hold button: hold', 'X loses steps', 'LIMIT (axis 1 plus)']) {
+  for (const name of ['feed hold button: hold', 'X loses steps', 'LIMIT (Y plus)']) {
     assert.ok(named.some((text) => text.startsWith(name)), `${name} in ${named.join('; ')}`)
   }
   await page.evaluate(() => window.trammel.setCycle(window.trammel.run.cycles))
@@ -365,8 +365,8 @@ test('inputs, causes, reactions, and where pulses and carriage part are seen', a
   assert.deepEqual(states, ['active', '–', 'active'])
   await page.locator('#tab-summary').click()
   const summary = await page.locator('#summary').textContent()
-  assert.match(summary, /By LIMIT \(axis 1 plus\), at line 4/)
-  assert.match(summary, /LIMIT \(axis 1 plus\)X 45\.000 Y 40\.\d{3}.*immediate stop/)
+  assert.match(summary, /By LIMIT \(Y plus\), at line 4/)
+  assert.match(summary, /LIMIT \(Y plus\)X 45\.000 Y 40\.\d{3}.*immediate stop/)
   assert.match(summary, /X from \d\.\d{4} s on[\d ]+ steps, \d+\.\d{3} mm at the end/)
   // The mark's time in the table moves the cursor there, and its line in the charts is under the cursor.
   await page.locator('#summary .go', { hasText: ' s' }).first().click()

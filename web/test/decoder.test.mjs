@@ -304,7 +304,7 @@ test('a limit stops the run, and its page ends there', () => {
   assert.match(said, /stopped\.html shows the run up to its stop/)
   const [mark, ...others] = run.surroundings.marks
   assert.equal(others.length, 0)
-  assert.deepEqual([mark.name, mark.reaction, mark.line], ['LIMIT (axis 0 plus)', 'immediate stop', 3])
+  assert.deepEqual([mark.name, mark.reaction, mark.line], ['LIMIT (X plus)', 'immediate stop', 3])
   // The switch is at 300 mm; at 100 mm/s, the axis moves further for the filter time of 1 ms and the scan after it.
   assert.ok(mark.place[0] > 300 && mark.place[0] < 300.4, `${mark.place[0]} mm`)
   assert.ok(Math.abs(run.coordinateAt(0, mark.cycle) - mark.place[0]) <= 2 / 80, 'its pulses say the same')

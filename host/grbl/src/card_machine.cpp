@@ -275,7 +275,7 @@ End CardMachine::fault() {
   if (!card_.read_status().faulted) return {};
   card_.wait_until_stopped();
   End end;
-  end.message = card_.read_fault_text(run::names_of_card_axes(machine_));
+  end.message = card_.read_fault_text();
   const std::uint32_t faults = card_.read_faults();
   const std::uint8_t motors = run::motors_of(machine_);
   const bool lost = (card_.read_place().valid & motors) != motors;

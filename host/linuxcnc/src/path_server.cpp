@@ -204,7 +204,7 @@ void PathServer::run_section() {
   }
   end_section();
   look();
-  if (now_.status.faulted) throw driver::FaultError(card_.read_faults(), card_.read_fault_text());
+  card_.parts().registers.throw_if_faulted(now_.status, "path");
   // Serves a hold or ratio request made at the last moment.
   driver::serve_requests(card_);
 }

@@ -115,7 +115,9 @@ void ServoStream::end_on_ramp() {
   card_.wait_until_stopped();
   const std::uint32_t faults = card_.read_faults();
   note_end();
-  if ((faults & ~card_map::field::kFaultMissingPeriod) != 0) throw driver::FaultError(faults, "end of a stream");
+  if ((faults & ~card_map::field::kFaultMissingPeriod) != 0) {
+    card_.parts().registers.throw_fault(faults, "end of a stream");
+  }
   if (faults != 0) card_.clear_faults();
   card_.parts().registers.write(card_map::reg::kStreaming, 0, "position stream: end");
 }

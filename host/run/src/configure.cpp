@@ -12,6 +12,7 @@
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/kinematics/kinematics.hpp"
 #include "trammel/planner/card_limits.hpp"
+#include "trammel/run/card_place.hpp"
 
 namespace trammel::run {
 
@@ -177,6 +178,7 @@ void configure_outputs(driver::Card& card, const machine::Machine& machine) {
 }
 
 void configure(driver::Card& card, const machine::Machine& machine) {
+  card.name_axes(names_of_card_axes(machine));
   check_outputs(card, machine.outputs.all());
   const kinematics::Kinematics kinematics(machine);
   for (std::size_t i = 0; i < kinematics.joints(); ++i) {

@@ -246,8 +246,11 @@ class Card {
   // FAULT; 0 if there is no fault.
   std::uint32_t read_faults();
   // The faults as text, from describe_faults(): names the axes and sides of limits and the axes of drives; "none" if
-  // there is no fault. `axes`: as of describe_faults().
-  std::string read_fault_text(const std::vector<std::string>& axes = {});
+  // there is no fault.
+  std::string read_fault_text();
+  // The names of the axes, by number, in this object's messages about faults: of read_fault_text() and of FaultError.
+  // An axis without a name is "axis N". Accesses no register.
+  void name_axes(std::vector<std::string> names);
   // Clears all faults. Restarts an expired watchdog, or switches it off if this object has set none. During a stop it
   // first waits for the end, as wait_until_stopped(), so the card accepts commands afterwards. If the wait throws
   // (TimeoutError, InterruptedError), the faults stay. The fault of a drive that still reports it cannot be cleared.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "trammel/card_map.hpp"
 
@@ -51,8 +52,9 @@ class RefusedError : public Error {
 class FaultError : public Error {
  public:
   // `faults`: the register FAULT. The message names its bits, and the axes of limits and drives from `limit_state`, the
-  // register LIMIT_STATE (nullopt if it was not read). `context` as above.
-  FaultError(std::uint32_t faults, const std::string& context, std::optional<std::uint32_t> limit_state = std::nullopt);
+  // register LIMIT_STATE (nullopt if it was not read). `context` as above; `axes` as of describe_faults().
+  FaultError(std::uint32_t faults, const std::string& context, std::optional<std::uint32_t> limit_state = std::nullopt,
+             const std::vector<std::string>& axes = {});
 
   std::uint32_t faults() const { return faults_; }
   std::uint32_t limit_state() const { return limit_state_; }

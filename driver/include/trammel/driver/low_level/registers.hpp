@@ -8,7 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "trammel/driver/bus.hpp"
 #include "trammel/driver/card_state.hpp"
@@ -45,6 +48,10 @@ class Registers {
   // The status for a value read from STATUS.
   Status status_of(const Access& access) const;
 
+  // As Card::name_axes().
+  void name_axes(std::vector<std::string> names) { axis_names_ = std::move(names); }
+  const std::vector<std::string>& axis_names() const { return axis_names_; }
+
   // FAULT, 0 if there is none.
   std::uint32_t read_faults() { return read(card_map::reg::kFault); }
   // Throws FaultError; reads LIMIT_STATE for the axes, which FAULT does not contain.
@@ -66,6 +73,7 @@ class Registers {
   [[noreturn]] void throw_refused_access(const Access& access, std::string_view context);
 
   Bus* bus_;
+  std::vector<std::string> axis_names_;
   std::optional<Refusal> earlier_;  // taken from the card and not reported yet
 };
 

@@ -9,7 +9,8 @@
 namespace trammel::run {
 
 // Sets step times and direction of each of the machine's motors, and the slew of the time base
-// (planner::hold_seconds(), or the slowest slew that the card has). Calls set_keeps_place() if an axis keeps its place.
+// (planner::hold_seconds(), or the slowest slew that the card has). Names the card's axes in messages about faults.
+// Calls set_keeps_place() if an axis keeps its place.
 // The card must be at rest. If the machine gives inputs a role, this also sets polarity, filters, roles and stops;
 // otherwise the card keeps its present ones. Throws driver::Error as driver::Card::configure_axis() does, and
 // driver::ArgumentError if the machine names an output or an input that the card lacks.
