@@ -23,7 +23,7 @@ TEST(WorldOnRtl, LimitAndEmergencyStopAsOnTheModel) {
   WorldCard rtl(text, rtl_card());
   WorldCard model(text);
   for (WorldCard* c : {&rtl, &model}) {
-    EXPECT_THAT(c->end_of("G1 X10 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
+    EXPECT_THAT(c->end_of("G1 X10 F3000\n"), HasSubstr("LIMIT (X plus)"));
     EXPECT_EQ(c->world.carriage(0).place(), c->engine.positions()[0]);
     EXPECT_TRUE(c->world.pressed("x_plus"));
     c->card.clear_faults();
