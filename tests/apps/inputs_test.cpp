@@ -96,8 +96,8 @@ TEST_F(ServedSwitches, ADriveThatReportsAFaultIsNamed) {
   const std::string drive = " --set inputs.y_drive_fault=\"{input=3, normally='closed'}\"";
   const Outcome stopped =
       command_.run("run " + command_.write("p.ngc", "G1 X300 F1800\n") + drive + " --card " + server_.moving());
-  EXPECT_THAT(stopped.err, AllOf(HasSubstr("DRIVE_FAULT (Y)"),
-                                 HasSubstr("the drive of Y reports a fault: clear it at the drive")));
+  EXPECT_THAT(stopped.err,
+              AllOf(HasSubstr("DRIVE_FAULT (Y)"), HasSubstr("the drive of Y reports a fault: clear it at the drive")));
 }
 
 class ServedDrives : public ::testing::Test {
