@@ -216,6 +216,7 @@ Made any_line(driver::Card& card, const LineArguments& options, const driver::Sn
 Made watched_line(driver::Card& card, transport::Connection& connection, const LineArguments& options,
                   const driver::Snapshot& before) {
   const machine::Machine machine = options.machine.load();
+  card.name_axes(run::names_of_card_axes(machine));
   limit_patience(connection, machine.motion);
   const MotionWatchdog watchdog(card, machine.motion);
   try {
