@@ -58,6 +58,9 @@ TEST_F(ServedSwitches, AProgramStopsAtItsLimit) {
       << "it does not stand where the stop was";
   const Outcome again = run("G91\nG1 X5 F1800\n", " --trust-position");
   EXPECT_THAT(again.err, HasSubstr("LIMIT (X plus)"));
+  const Outcome line =
+      command_.run("line --to 400,0 --speed 2000 --no-ramp --clear-faults --trust-position --card " + server_.moving());
+  EXPECT_THAT(line.err, HasSubstr("LIMIT (X plus)"));
 }
 
 // The command that the message suggests moves the axis away.
